@@ -1,0 +1,69 @@
+#pragma once
+
+#include <memory>
+
+#include "hw_interface/machine_io.hpp"
+#include "models/excavator/machine_model.hpp"
+#include "models/terrain/terrain_map.hpp"
+#include "models/types/result.hpp"
+
+namespace wex {
+
+struct SimulationSettings {
+  double timestep_s = 0.002;
+  double control_period_s = 0.01;  ///< 100 Hz joint loop
+  double ground_friction = 0.9;
+  double settle_time_s = 2.0;  ///< simulated before the first read, machine holding
+};
+
+/// The truth about contacts and motion, for reports only: no controller may read it.
+struct GroundTruth {
+  double t_s = 0.0;
+  BaseCoordinates base{};
+  double base_vertical_rate_m_s = 0.0;
+  std::array<double, kNumWheels> wheel_load_n{};
+  std::array<double, kNumWheels> wheel_penetration_m{};  ///< disc below the ground, > 0 is into it
+  std::array<double, kNumWheels> tyre_deflection_m{};
+  std::array<double, kNumWheels>
+      side_slip_m{};  ///< integral of |patch velocity along the axle| while loaded
+  std::array<double, kNumWheels> wheel_travel_m{};
+  std::array<double, kNumWheels> airborne_s{};  ///< time without load
+  double stability_margin_m = 0.0;              ///< CoM to the nearest edge of the loaded wheels
+  bool body_contact = false;                    ///< anything but wheels and bucket touches ground
+};
+
+/// The MuJoCo machine on a terrain: default implementation of MachineIo, lock step (wait_until
+/// simulates). Valve dead time and lag, dead band with its inverse, shared pump flow, wheel drives
+/// with stall stop and brake latch as in the decisions.
+class SimulatedMachine final : public MachineIo {
+ public:
+  /// Places the machine in posture q (num_coordinates, local world frame) and lets it settle.
+  ///   errors  kInternal with MuJoCo's message
+  [[nodiscard]] static Result<std::unique_ptr<SimulatedMachine>> create(
+      const MachineModel& machine, const TerrainMap& terrain, const Eigen::VectorXd& q,
+      const SimulationSettings& settings = {});
+  ~SimulatedMachine() override;
+
+  MachineState read() noexcept override;
+  WriteOutcome write(const JointCommand& command) noexcept override;
+  void stop() noexcept override;
+  void release() noexcept override;
+  MachineHealth health() const noexcept override;
+  void wait_until(double t_s) override;
+
+  [[nodiscard]] GroundTruth ground_truth() const;
+  /// Values of every scalar joint of model.xml in its order (passive and tyres included).
+  [[nodiscard]] Eigen::VectorXd scalar_joint_positions() const;
+  /// Writes a PNG of the scene from behind and above the machine (off screen).
+  [[nodiscard]] Result<void> render(const std::string& png_file, int width_px = 960,
+                                    int height_px = 600);
+  /// CPU seconds spent inside the simulation so far.
+  [[nodiscard]] double cpu_time_s() const noexcept;
+
+ private:
+  struct Impl;
+  explicit SimulatedMachine(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace wex
