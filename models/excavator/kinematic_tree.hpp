@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,8 @@ class KinematicTree {
  public:
   struct Body {
     std::string name;
-    int parent = -1;  ///< body index, -1 for the base
+    std::string joint_name;  ///< of the joint that carries the body, empty for the base
+    int parent = -1;         ///< body index, -1 for the base
     Eigen::Isometry3d T_parent_joint = Eigen::Isometry3d::Identity();
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< in the joint frame
     bool prismatic = false;
@@ -30,6 +32,7 @@ class KinematicTree {
     double offset = 0.0;  ///< joint value = offset + multiplier * q[coordinate]
     double mass_kg = 0.0;
     Eigen::Vector3d p_body_com = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Zero();  ///< about the CoM, body axes
   };
 
   /// Joint poses of one configuration. Sized by make_workspace, then reused without allocation.
@@ -83,7 +86,27 @@ class KinematicTree {
                    Eigen::Ref<Eigen::MatrixXd> hessian) const noexcept;
 
  private:
+  // Columns of the CoM Jacobian, one per chain joint (before mimic multipliers).
+  Eigen::Vector3d base_com_column(const Workspace& w, int coordinate) const noexcept;
+  Eigen::Vector3d joint_com_column(const Workspace& w, int body) const noexcept;
+  // Each adds weights . (a_i x column_j) for the pairs of chain joints it is named after.
+  template <typename BaseColumn>
+  void add_base_hessian(const Workspace& w, const Eigen::Vector3d& weights,
+                        const BaseColumn& base_column,
+                        Eigen::Ref<Eigen::MatrixXd> hessian) const noexcept;
+  void add_joint_hessian(const Workspace& w, const std::vector<int>& chain,
+                         std::size_t position_in_chain, const Eigen::Vector3d& weights,
+                         const Eigen::Vector3d& column,
+                         Eigen::Ref<Eigen::MatrixXd> hessian) const noexcept;
+  template <typename BaseColumn, typename JointColumn>
+  void add_chain_hessian(const Workspace& w, const std::vector<int>& chain,
+                         const Eigen::Vector3d& weights, const BaseColumn& base_column,
+                         const JointColumn& joint_column,
+                         Eigen::Ref<Eigen::MatrixXd> hessian) const noexcept;
+
   std::vector<Body> bodies_;
+  std::vector<std::vector<int>> moving_ancestors_;  ///< per body, root first, itself included
+  std::vector<double> subtree_mass_kg_;
   int num_coordinates_ = 0;
   double total_mass_kg_ = 0.0;
 };
