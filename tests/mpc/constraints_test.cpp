@@ -62,7 +62,9 @@ class Constraints : public ::testing::Test {
       for (int c = 0; c < analytic.cols(); ++c) {
         EXPECT_NEAR(analytic(r, c), numeric(r, c), kTolerance * (1.0 + std::abs(numeric(r, c))))
             << name << " row " << r << " column " << c;
-        if (!pattern(r, c)) EXPECT_EQ(analytic(r, c), 0.0) << name << " outside its pattern";
+        if (!pattern(r, c)) {
+          EXPECT_EQ(analytic(r, c), 0.0) << name << " outside its pattern";
+        }
       }
     }
   }
