@@ -19,6 +19,7 @@ enum class JointRole { kHipAbduction, kHipFlexion, kSteering, kWheel, kArm, kAux
 /// One actuated joint, limits as in the URDF, actuation as in the side-car. SI units.
 struct Joint {
   std::string name;
+  int body = -1;  ///< tree body it carries
   JointRole role = JointRole::kAuxiliary;
   bool prismatic = false;
   bool continuous = false;                ///< no position limits; lower/upper are then -/+infinity
@@ -39,7 +40,11 @@ struct WheeledLeg {
   int carrier_body = -1;  ///< tree body that carries the axle and does not spin with the wheel
   Eigen::Vector3d p_carrier_wheel;  ///< wheel centre at static tyre sag, carrier frame [m]
   Eigen::Vector3d axle_carrier;     ///< unit axle, pointing to the machine's left at q = 0
-  double wheel_sign = 1.0;          ///< +1 if positive wheel rate rolls the machine forward
+  int wheel_body = -1;  ///< tree body of the wheel; its tyre stands locked at static sag
+  Eigen::Vector3d tyre_axis_carrier;  ///< unit axis of the tyre's slide: base z in default posture
+  Eigen::Vector3d p_carrier_wheel_unloaded;  ///< wheel centre at zero deflection [m];
+                                             ///< p_carrier_wheel = this + static_sag_m * tyre axis
+  double wheel_sign = 1.0;  ///< +1 if positive wheel rate rolls the machine forward
   double radius_m = 0.6, half_width_m = 0.2;
   double static_sag_m = 0.0;  ///< tyre deflection standing on flat ground in default posture
 };
@@ -53,6 +58,7 @@ struct ArmLimb {
 /// A passive joint that follows an actuated one: position = multiplier * q[coordinate].
 struct PassiveJoint {
   std::string name;
+  int body = -1;  ///< tree body it carries
   int coordinate = -1;
   double multiplier = 0.0;
 };
@@ -75,6 +81,7 @@ struct MachineModel {
   double min_turning_radius_m = 4.5;         ///< all-wheel steering
   double pump_flow_limit_w_over_pa = 0.004;  ///< m^3/s shared by all moving joints but wheels
   double pump_pressure_pa = 35e6;
+  double valve_dead_band = 0.05;  ///< of full command
   double tyre_stiffness_n_m = 6e5, tyre_damping_ns_m = 1.5e4;
 
   [[nodiscard]] int num_joints() const { return static_cast<int>(joints.size()); }
@@ -86,7 +93,8 @@ struct MachineModel {
   [[nodiscard]] Eigen::VectorXd transport_posture() const;  ///< driving: arm folded, bucket clear
 };
 
-/// Reads machines/NAME from the source tree (or a directory given by path). Never throws.
+/// Reads NAME.urdf and NAME.toml from the directory NAME under $WEX_MACHINES_DIR (default:
+/// machines/ of the source tree), or from a directory given by its path. Never throws.
 ///   errors  kBadInput naming file and line or field
 [[nodiscard]] Result<MachineModel> load_machine(const std::string& name_or_directory = "m545");
 
