@@ -14,6 +14,7 @@ struct SimulationSettings {
   double control_period_s = 0.01;  ///< 100 Hz joint loop
   double ground_friction = 0.9;
   double settle_time_s = 2.0;  ///< simulated before the first read, machine holding
+  bool load_balance = true;    ///< slow correction of the diagonal wheel loads
 };
 
 /// The truth about contacts and motion, for reports only: no controller may read it.
@@ -29,16 +30,20 @@ struct GroundTruth {
   std::array<double, kNumWheels> wheel_travel_m{};
   std::array<double, kNumWheels> airborne_s{};  ///< time without load
   double stability_margin_m = 0.0;              ///< CoM to the nearest edge of the loaded wheels
-  bool body_contact = false;                    ///< anything but wheels and bucket touches ground
+  bool body_contact = false;  ///< anything but wheels and bucket has touched the ground so far
 };
 
 /// The MuJoCo machine on a terrain: default implementation of MachineIo, lock step (wait_until
 /// simulates). Valve dead time and lag, dead band with its inverse, shared pump flow, wheel drives
-/// with stall stop and brake latch as in the decisions.
+/// with stall stop and brake latch as in the decisions. Position targets are taken as they are at
+/// every tick of the joint loop, not extrapolated: write at 100 Hz, or let the rates carry.
+/// Hip flexions are read and commanded without what the load balance adds to them.
 class SimulatedMachine final : public MachineIo {
  public:
-  /// Places the machine in posture q (num_coordinates, local world frame) and lets it settle.
-  ///   errors  kInternal with MuJoCo's message
+  /// Places the machine in posture q (num_coordinates, local world frame; tyres at static sag) and
+  /// lets it settle; machine time is then 0. The control period is a multiple of the time step
+  /// (contract).
+  ///   errors  kInternal with MuJoCo's message, or if the simulation breaks up while settling
   [[nodiscard]] static Result<std::unique_ptr<SimulatedMachine>> create(
       const MachineModel& machine, const TerrainMap& terrain, const Eigen::VectorXd& q,
       const SimulationSettings& settings = {});
@@ -52,6 +57,8 @@ class SimulatedMachine final : public MachineIo {
   void wait_until(double t_s) override;
 
   [[nodiscard]] GroundTruth ground_truth() const;
+  /// What the load balance has added to each hip flexion, by Limb; not part of read()'s positions.
+  [[nodiscard]] std::array<double, kNumWheels> load_balance_offset_rad() const noexcept;
   /// Values of every scalar joint of model.xml in its order (passive and tyres included).
   [[nodiscard]] Eigen::VectorXd scalar_joint_positions() const;
   /// Writes a PNG of the scene from behind and above the machine (off screen).
