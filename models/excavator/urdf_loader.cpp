@@ -7,9 +7,9 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <mutex>
-#include <sstream>
 #include <utility>
 
 namespace wex {
@@ -174,22 +174,20 @@ class Converter {
 
 Result<UrdfModel> load_urdf(const std::filesystem::path& path) {
   std::ifstream stream(path);
-  std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf())) {
-    return fail(ErrorCode::kBadInput, path.string() + ": cannot be read as a URDF file");
-  }
+  if (!stream) return fail(ErrorCode::kBadInput, path.string() + ": cannot be read as a URDF file");
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
   const FirstComplaint complaint;
+  const auto invalid = [&](const std::string& why) {
+    return fail(ErrorCode::kBadInput, path.string() + ": is not a valid URDF: " + why);
+  };
   try {
-    const urdf::ModelInterfaceSharedPtr source = urdf::parseURDF(text.str());
-    if (!source || !source->getRoot()) {
-      return fail(ErrorCode::kBadInput,
-                  path.string() + ": is not a valid URDF: " +
-                      (complaint.text().empty() ? "no robot found" : complaint.text()));
-    }
+    const urdf::ModelInterfaceSharedPtr source = urdf::parseURDF(text);
+    // urdfdom goes on after some errors, with zeros for what it could not read.
+    if (!complaint.text().empty()) return invalid(complaint.text());
+    if (!source || !source->getRoot()) return invalid("no robot found");
     return Converter(path.string()).convert(*source);
   } catch (const std::exception& error) {
-    return fail(ErrorCode::kBadInput,
-                path.string() + ": is not a valid URDF: " + std::string(error.what()));
+    return invalid(error.what());
   }
 }
 
