@@ -17,7 +17,7 @@ struct PlanSettings {
   double time_budget_s = 4.0;     ///< ignored when iterations is set
   std::optional<int> iterations;  ///< fixed number of planner iterations: deterministic by seed
   std::uint64_t seed = 1;
-  double range_m = 10.0;  ///< longest Reeds-Shepp connection
+  double range_m = 10.0;  ///< longest step of the tree, in distance plus weighted yaw
   double subnode_spacing_m = 0.2;
   double yaw_weight_m_rad = 1.5;
   double max_tilt_rad = 0.3490658503988659;  ///< 20 degrees, roll and pitch

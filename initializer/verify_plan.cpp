@@ -1,0 +1,173 @@
+#include "initializer/verify_plan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
+
+namespace wex {
+namespace {
+
+constexpr double kHeightToleranceM = 1e-3;
+constexpr double kPoseTolerance = 1e-4;  // m and rad, at both ends
+constexpr double kRounding = 1e-6;       // relative or absolute slack for sums of doubles
+constexpr double kBellySpacingM = 0.2;
+
+std::string with_number(const std::string& text, double value) {
+  char number[32];
+  std::snprintf(number, sizeof number, "%.4g", value);
+  return text + " " + number;
+}
+
+class Verifier {
+ public:
+  Verifier(const TerrainMap& terrain, const MachineModel& machine, const PlanSettings& settings)
+      : terrain_(terrain),
+        machine_(machine),
+        settings_(settings),
+        workspace_(machine.tree.make_workspace()) {}
+
+  // The first violation of a node by itself.
+  std::optional<std::string> violation(const WholeBodyNode& node, PlanVerdict& verdict) {
+    if (node.q.size() != machine_.num_coordinates()) return "wrong number of coordinates";
+    if (!node.q.allFinite() || !std::isfinite(node.t_s)) return "not finite";
+    machine_.tree.update(node.q, workspace_);
+    for (const int i : {kBasePitch, kBaseRoll}) {
+      if (std::abs(node.q[i]) > settings_.max_tilt_rad + kRounding) {
+        return with_number("tilt [rad]", node.q[i]);
+      }
+    }
+    for (int j = 0; j < machine_.num_joints(); ++j) {
+      const Joint& joint = machine_.joints[static_cast<std::size_t>(j)];
+      const double value = node.q[kNumBaseCoordinates + j];
+      if (!joint.continuous && !(value >= joint.lower - kRounding && value <= joint.upper + kRounding)) {
+        return with_number(joint.name + " beyond its limits:", value);
+      }
+    }
+    if (auto wheels = wheel_violation(verdict)) return wheels;
+    return belly_violation();
+  }
+
+ private:
+  std::optional<std::string> wheel_violation(PlanVerdict& verdict) const {
+    std::array<Eigen::Vector2d, kNumWheels> contacts;
+    for (std::size_t i = 0; i < kNumWheels; ++i) {
+      const WheeledLeg& leg = machine_.legs[i];
+      const std::string name = "wheel " + std::string(kLimbNames[i]);
+      const Eigen::Vector3d p =
+          machine_.tree.position(workspace_, leg.carrier_body, leg.p_carrier_wheel);
+      contacts[i] = p.head<2>();
+      if (!terrain_.known(contacts[i])) return name + " off the map or over unknown ground";
+      if (!terrain_.traversable_at(contacts[i])) return name + " on untraversable ground";
+      const double distance_m = terrain_.signed_distance_m(contacts[i]);
+      if (!(distance_m >= settings_.min_signed_distance_m - kRounding)) {
+        return with_number(name + " close to untraversable ground [m]:", distance_m);
+      }
+      const double error_m = p.z() - leg.radius_m - terrain_.dilated_height_m(contacts[i]);
+      verdict.worst_height_error_m = std::max(verdict.worst_height_error_m, std::abs(error_m));
+      if (!(std::abs(error_m) <= kHeightToleranceM)) {
+        return with_number(name + " off the ground [m]:", error_m);
+      }
+    }
+    const double margin_m = polygon_margin(machine_.tree.com(workspace_).head<2>(), contacts);
+    verdict.min_stability_margin_m = std::min(verdict.min_stability_margin_m, margin_m);
+    if (!(margin_m >= settings_.min_stability_margin_m - kRounding)) {
+      return with_number("stability margin [m]", margin_m);
+    }
+    return std::nullopt;
+  }
+
+  // By areas, unlike the planner's edge normals: distance = twice a triangle's area over its base.
+  static double polygon_margin(const Eigen::Vector2d& p,
+                               const std::array<Eigen::Vector2d, kNumWheels>& contacts) {
+    constexpr std::array<std::size_t, 5> kLoop{0, 2, 3, 1, 0};  // LF, LH, RH, RF: anticlockwise
+    double margin_m = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i + 1 < kLoop.size(); ++i) {
+      const Eigen::Vector2d& a = contacts[kLoop[i]];
+      const Eigen::Vector2d& b = contacts[kLoop[i + 1]];
+      Eigen::Matrix2d sides;
+      sides << b - a, p - a;
+      margin_m = std::min(margin_m, sides.determinant() / (b - a).norm());
+    }
+    return margin_m;
+  }
+
+  std::optional<std::string> belly_violation() const {
+    const Eigen::Vector2d size = machine_.belly_max_m - machine_.belly_min_m;
+    const Eigen::Array2i steps = (size.array() / kBellySpacingM).ceil().max(1.0).cast<int>();
+    for (int i = 0; i <= steps.x(); ++i) {
+      for (int j = 0; j <= steps.y(); ++j) {
+        const Eigen::Vector3d p_base(machine_.belly_min_m.x() + size.x() * i / steps.x(),
+                                     machine_.belly_min_m.y() + size.y() * j / steps.y(),
+                                     -machine_.belly_below_base_m);
+        const Eigen::Vector3d p = machine_.tree.position(workspace_, 0, p_base);
+        const double clearance_m = p.z() - terrain_.height_m(p.head<2>());
+        if (!(clearance_m >= settings_.belly_clearance_m - kRounding)) {
+          return with_number("clearance under the chassis [m]", clearance_m);
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
+  const TerrainMap& terrain_;
+  const MachineModel& machine_;
+  const PlanSettings& settings_;
+  KinematicTree::Workspace workspace_;
+};
+
+std::optional<std::string> step_violation(const MachineModel& machine, const WholeBodyNode& a,
+                                          const WholeBodyNode& b, const PlanSettings& settings) {
+  const double dt_s = b.t_s - a.t_s;
+  if (!(dt_s > 0.0)) return "time does not increase";
+  const double step_m = (b.q - a.q).head<2>().norm();
+  if (step_m > settings.subnode_spacing_m + kRounding) {
+    return with_number("distance to the next node [m]", step_m);
+  }
+  for (int j = 0; j < machine.num_joints(); ++j) {
+    const Joint& joint = machine.joints[static_cast<std::size_t>(j)];
+    const double rate = std::abs((b.q - a.q)[kNumBaseCoordinates + j]) / dt_s;
+    if (rate > settings.rate_fraction * joint.max_rate * (1.0 + kRounding)) {
+      return with_number("rate of " + joint.name, rate);
+    }
+  }
+  return std::nullopt;
+}
+
+bool is_at(const Eigen::VectorXd& q, const Pose2& pose) {
+  return std::hypot(q[kBaseX] - pose.x_m, q[kBaseY] - pose.y_m) < kPoseTolerance &&
+         std::abs(wrap_angle(q[kBaseYaw] - pose.yaw_rad)) < kPoseTolerance;
+}
+
+}  // namespace
+
+PlanVerdict verify_plan(const TerrainMap& terrain, const MachineModel& machine, const Plan& plan,
+                        const PlanSettings& settings) {
+  PlanVerdict verdict;
+  verdict.min_stability_margin_m = std::numeric_limits<double>::infinity();
+  const auto reject = [&](std::size_t node, std::string what) {
+    verdict.node = node;
+    verdict.violation = "node " + std::to_string(node) + ": " + std::move(what);
+    return verdict;
+  };
+  if (plan.nodes.empty()) return reject(0, "there is none");
+  Verifier verifier(terrain, machine, settings);
+  for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
+    if (auto what = verifier.violation(plan.nodes[i], verdict)) return reject(i, *std::move(what));
+    if (i == 0) continue;
+    if (auto what = step_violation(machine, plan.nodes[i - 1], plan.nodes[i], settings)) {
+      return reject(i, *std::move(what));
+    }
+  }
+  if (plan.nodes.front().t_s != 0.0) return reject(0, "does not start at t = 0");
+  if (!is_at(plan.nodes.front().q, plan.task.start)) return reject(0, "is not at the start");
+  if (!is_at(plan.nodes.back().q, plan.task.goal)) {
+    return reject(plan.nodes.size() - 1, "is not at the goal");
+  }
+  verdict.ok = true;
+  return verdict;
+}
+
+}  // namespace wex
