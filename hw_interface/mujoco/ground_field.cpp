@@ -13,6 +13,7 @@ namespace {
 constexpr const char* kGroundMaterial = "ground";
 constexpr double kPitDepth_m = 2.0;
 constexpr double kBaseThickness_m = 1.0;
+constexpr double kSceneRadius_m = 10.0;
 constexpr double kFlattest_m = 0.01;  ///< a height field needs some range
 
 double extent_m(int size, double cell_m) { return (size - 1) * cell_m; }
@@ -62,7 +63,7 @@ void add_ground(mjSpec* spec, const Grid& elevation, double friction) {
   geom->conaffinity = kMachineContactType;
 }
 
-void add_scenery(mjSpec* spec, const Grid& elevation) {
+void add_scenery(mjSpec* spec, const Grid& elevation, const std::string& followed_body) {
   mjsTexture* checker = mjs_addTexture(spec, nullptr);
   mjs_setName(checker->element, kGroundMaterial);
   checker->type = mjTEXTURE_2D;
@@ -90,14 +91,20 @@ void add_scenery(mjSpec* spec, const Grid& elevation) {
   std::copy(horizon, horizon + 3, sky->rgb1);
   std::copy(zenith, zenith + 3, sky->rgb2);
 
-  mjsLight* sun = mjs_addLight(mjs_findBody(spec, "world"), nullptr);
+  mjsLight* sun = mjs_addLight(mjs_findBody(spec, followed_body.c_str()), nullptr);
   sun->type = mjLIGHT_DIRECTIONAL;
-  sun->pos[2] = 30.0;
-  const double direction[3] = {0.45, -0.35, -1.0};
+  sun->mode = mjCAMLIGHT_TRACK;
+  const double position[3] = {-6.0, 5.0, 14.0}, direction[3] = {6.0, -5.0, -14.0};
+  std::copy(position, position + 3, sun->pos);
   std::copy(direction, direction + 3, sun->dir);
   sun->castshadow = 1;
-  for (float& channel : sun->diffuse) channel = 0.7F;
-  for (float& channel : sun->specular) channel = 0.1F;
+  for (float& channel : sun->diffuse) channel = 0.65F;
+  for (float& channel : sun->specular) channel = 0.05F;
+  spec->stat.extent = kSceneRadius_m;  // shadows and clipping planes are scaled by it
+  spec->visual.quality.shadowsize = 4096;
+  for (float& channel : spec->visual.headlight.ambient) channel = 0.35F;
+  for (float& channel : spec->visual.headlight.diffuse) channel = 0.25F;
+  for (float& channel : spec->visual.headlight.specular) channel = 0.0F;
 }
 
 }  // namespace wex

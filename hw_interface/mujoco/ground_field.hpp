@@ -2,6 +2,8 @@
 
 #include <mujoco/mujoco.h>
 
+#include <string>
+
 #include "models/terrain/terrain_map.hpp"
 
 namespace wex {
@@ -13,7 +15,8 @@ inline constexpr const char* kGroundName = "ground";
 /// there.
 void add_ground(mjSpec* spec, const Grid& elevation, double friction);
 
-/// Colours by checker, a light and a sky, for rendering.
-void add_scenery(mjSpec* spec, const Grid& elevation);
+/// For rendering: squares of one metre on the ground, a sky, and a sun that follows a body so that
+/// the shadows near it are sharp.
+void add_scenery(mjSpec* spec, const Grid& elevation, const std::string& followed_body);
 
 }  // namespace wex

@@ -40,15 +40,14 @@ Result<MujocoModel> compile_scene(const MachineModel& machine, const TerrainMap&
   if (!spec) return tl::unexpected(spec.error());
   spec->get()->option.timestep = settings.timestep_s;
   add_ground(spec->get(), terrain.elevation(), settings.ground_friction);
-  add_scenery(spec->get(), terrain.elevation());
+  add_scenery(spec->get(), terrain.elevation(), machine.tree.bodies().front().name);
   auto model = compile(spec->get());
   if (!model) return model;
   mjModel& m = **model;
   // A state that is not finite is a fault to report, not something to restart from.
   m.opt.disableflags |= mjDSBL_AUTORESET;
   for (int g = 0; g < m.ngeom; ++g) {
-    const bool load_bearing = m.geom_group[g] == kWheelGroup || m.geom_group[g] == kBucketGroup;
-    if (load_bearing) m.geom_friction[3 * g] = settings.ground_friction;
+    if (m.geom_group[g] == kLoadBearingGroup) m.geom_friction[3 * g] = settings.ground_friction;
   }
   return model;
 }

@@ -30,8 +30,9 @@ using MujocoData = std::unique_ptr<mjData, DataDeleter>;
 /// contype = kGroundContactType, conaffinity = kMachineContactType.
 inline constexpr int kGroundContactType = 1, kMachineContactType = 2;
 
-/// Geom groups of the machine, for those who ask what touches the ground.
-enum GeomGroup { kVisualGroup = 1, kWheelGroup = 2, kBucketGroup = 3, kBodyGroup = 4 };
+/// Geom groups of the machine (all shown by default): chassis, legs and arm, which must not touch
+/// the ground; what is only looked at; wheels and bucket.
+enum GeomGroup { kBodyGroup = 0, kVisualGroup = 1, kLoadBearingGroup = 2 };
 
 /// Names of what the machine's model contains besides its joints (actuators have joint names).
 [[nodiscard]] std::string wheel_site_name(Limb limb);  ///< "LF_wheel"

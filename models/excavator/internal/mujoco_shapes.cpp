@@ -41,8 +41,8 @@ mjsGeom* add_geom(mjsBody* body, mjtGeom type, Colour colour, bool collides) {
 }
 
 /// Wheel and bucket: their own friction and contact settings win over the ground's.
-void make_load_bearing(mjsGeom* geom, GeomGroup group) {
-  geom->group = group;
+void make_load_bearing(mjsGeom* geom) {
+  geom->group = kLoadBearingGroup;
   geom->condim = kTyreContactDimension;
   geom->priority = 1;
   std::copy(kTyreFriction, kTyreFriction + 3, geom->friction);
@@ -105,7 +105,7 @@ void add_wheel(mjsBody* body, const Eigen::Vector3d& axle, double radius_m, doub
   set_pose(tyre, T_link_wheel);
   tyre->size[0] = radius_m;
   tyre->size[1] = half_width_m;
-  make_load_bearing(tyre, kWheelGroup);
+  make_load_bearing(tyre);
 
   mjsGeom* rim = add_geom(body, mjGEOM_CYLINDER, kSteel, false);
   set_pose(rim, T_link_wheel);
@@ -159,8 +159,7 @@ void add_bucket(mjsBody* body, const Eigen::Vector3d& p_link_contact, const Eige
         p_link_contact - kBucketCapsuleRadius_m * down + sign * kBucketCapsuleHalfSpacing_m * along;
     make_load_bearing(add_capsule(body, centre - kBucketCapsuleHalfLength_m * side,
                                   centre + kBucketCapsuleHalfLength_m * side,
-                                  kBucketCapsuleRadius_m, kSteel, true),
-                      kBucketGroup);
+                                  kBucketCapsuleRadius_m, kSteel, true));
   }
   // Sole, back, and two cheeks.
   Eigen::Matrix3d R;
