@@ -65,6 +65,20 @@ TEST_F(Machine, Has25ActuatedJointsInTheDocumentedOrder) {
   }
 }
 
+TEST(MachineReadme, ExampleFindsTheLeftFrontWheel) {
+  const auto machine = load_machine("m545");
+  ASSERT_TRUE(machine) << machine.error().message;
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(machine->num_coordinates());
+  q.tail(machine->num_joints()) = machine->transport_posture();
+  q[kBaseZ] = machine->default_base_height_m;
+  auto w = machine->tree.make_workspace();
+  machine->tree.update(q, w);
+  const WheeledLeg& leg = machine->legs[static_cast<int>(Limb::kLF)];
+  const Eigen::Vector3d p_world_wheel =
+      machine->tree.position(w, leg.carrier_body, leg.p_carrier_wheel);
+  EXPECT_NEAR(p_world_wheel.z(), leg.radius_m, kStandingToleranceM);
+}
+
 TEST_F(Machine, WeighsTwelveTonnes) { EXPECT_NEAR(machine_.total_mass_kg, 12000.0, 1e-6); }
 
 TEST_F(Machine, KnowsEachJointsRoleLimitsAndActuation) {
