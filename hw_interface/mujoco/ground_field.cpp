@@ -102,6 +102,7 @@ void add_scenery(mjSpec* spec, const Grid& elevation, const std::string& followe
   for (float& channel : sun->specular) channel = 0.05F;
   spec->stat.extent = kSceneRadius_m;  // shadows and clipping planes are scaled by it
   spec->visual.quality.shadowsize = 4096;
+  spec->visual.map.shadowclip = 1.5F;
   for (float& channel : spec->visual.headlight.ambient) channel = 0.35F;
   for (float& channel : spec->visual.headlight.diffuse) channel = 0.25F;
   for (float& channel : spec->visual.headlight.specular) channel = 0.0F;

@@ -205,7 +205,9 @@ class SpecBuilder {
     const bool thin = source.prismatic || length_m < kLongBeam_m;
     const shapes::Colour colour = !thin ? shapes::kYellow : arm ? shapes::kSteel : shapes::kGrey;
     const double half_m = (arm ? kArmHalfThickness_m : kLegHalfThickness_m) * (thin ? 0.75 : 1.0);
-    shapes::add_beam(body, start, end, up, 1.2 * half_m, half_m, colour, length_m >= kLongBeam_m);
+    const Joint* next = actuated(child);
+    const bool collides = length_m >= kLongBeam_m && !(next && next->role == JointRole::kAuxiliary);
+    shapes::add_beam(body, start, end, up, 1.2 * half_m, half_m, colour, collides);
   }
 
   /// Something at a limb's end, a claw: a rod through its centre of mass.
@@ -235,7 +237,13 @@ class SpecBuilder {
     copy3(p_contact, site->pos);
     const Eigen::Vector3d side = R_base_body.transpose().col(1);
     const Eigen::Vector3d down = -R_base_body.transpose().col(2);
-    shapes::add_bucket(body, p_contact, side, down);
+    // Mounted at the last joint before it.
+    Eigen::Isometry3d T_contact_joint = Eigen::Isometry3d::Identity();
+    for (int i = machine_.arm->contact_body; i > 0 && bodies_[i].coordinate < 0;
+         i = bodies_[i].parent) {
+      T_contact_joint = T_contact_joint * bodies_[i].T_parent_joint.inverse();
+    }
+    shapes::add_bucket(body, p_contact, T_contact_joint.translation(), side, down);
   }
 
   void add_passive_couplings() {

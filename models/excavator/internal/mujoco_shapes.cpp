@@ -151,7 +151,8 @@ void add_upper_carriage(mjsBody* body) {
   add_box(body, at(0.45, -0.28, 0.45), {0.38, 0.22, 0.26}, kYellow, false);  // boom foot
 }
 
-void add_bucket(mjsBody* body, const Eigen::Vector3d& p_link_contact, const Eigen::Vector3d& side,
+void add_bucket(mjsBody* body, const Eigen::Vector3d& p_link_contact,
+                const Eigen::Vector3d& p_link_mount, const Eigen::Vector3d& side,
                 const Eigen::Vector3d& down) {
   const Eigen::Vector3d along = down.cross(side);
   for (const double sign : {-1.0, 1.0}) {
@@ -161,22 +162,18 @@ void add_bucket(mjsBody* body, const Eigen::Vector3d& p_link_contact, const Eige
                                   centre + kBucketCapsuleHalfLength_m * side,
                                   kBucketCapsuleRadius_m, kSteel, true));
   }
-  // Sole, back, and two cheeks.
-  Eigen::Matrix3d R;
-  R << along, side, along.cross(side);
-  constexpr double kHalfWidth_m = 0.75, kHalfLength_m = 0.33, kHalfDepth_m = 0.33,
-                   kHalfPlate_m = 0.025;
-  const Eigen::Vector3d sole = p_link_contact - 0.05 * down;
-  const Eigen::Vector3d middle = sole - kHalfDepth_m * down;
-  add_box(body, pose(R, sole), {kHalfLength_m, kHalfWidth_m, kHalfPlate_m}, kSteel, false);
-  add_box(body, pose(R, middle - kHalfLength_m * along), {kHalfPlate_m, kHalfWidth_m, kHalfDepth_m},
-          kSteel, false);
-  add_box(body, pose(R, middle - kHalfDepth_m * down), {0.5 * kHalfLength_m, 0.25, 0.08}, kGrey,
-          false);
+  constexpr double kHalfWidth_m = 0.75, kHalfDepth_m = 0.28, kHalfPlate_m = 0.025;
+  const Eigen::Vector3d depth = (p_link_contact - p_link_mount).cross(side).normalized();
+  const auto add_plate = [&](const Eigen::Vector3d& offset, double half_up_m, double half_side_m) {
+    add_beam(body, p_link_mount + offset, p_link_contact + offset, depth, half_up_m, half_side_m,
+             kSteel, false);
+  };
+  add_plate(-kHalfDepth_m * depth, kHalfPlate_m, kHalfWidth_m);
   for (const double sign : {-1.0, 1.0}) {
-    add_box(body, pose(R, middle + sign * kHalfWidth_m * side),
-            {kHalfLength_m, kHalfPlate_m, kHalfDepth_m}, kSteel, false);
+    add_plate(sign * kHalfWidth_m * side, kHalfDepth_m, kHalfPlate_m);
   }
+  add_box(body, pose(frame_along(depth, side), p_link_mount), {kHalfWidth_m, 0.03, kHalfDepth_m},
+          kSteel, false);
 }
 
 }  // namespace wex::shapes

@@ -34,9 +34,11 @@ void add_chassis(mjsBody* body, const Eigen::Vector2d& min_m, const Eigen::Vecto
                  double belly_below_base_m, double turn_height_m);
 /// Upper carriage on the turning joint: cab on the left, boom on the right, engine behind.
 void add_upper_carriage(mjsBody* body);
-/// Bucket above its contact point: two parallel capsules that carry load, plates to look at.
+/// Bucket from where it is mounted to its contact point: two parallel capsules at the contact point
+/// that carry load, plates to look at.
 ///   side, down  unit vectors across the bucket and out of its sole
-void add_bucket(mjsBody* body, const Eigen::Vector3d& p_link_contact, const Eigen::Vector3d& side,
+void add_bucket(mjsBody* body, const Eigen::Vector3d& p_link_contact,
+                const Eigen::Vector3d& p_link_mount, const Eigen::Vector3d& side,
                 const Eigen::Vector3d& down);
 
 }  // namespace wex::shapes
