@@ -72,8 +72,11 @@ TrajectorySetup RecedingHorizon::Impl::make_setup(const HorizonInput& input) con
   setup.machine = machine;
   setup.layout = layout;
   setup.dt_s = settings.dt_s;
+  double mean_bias_m = 0.0;  // the base rides as high above the wheels as in the reference
+  for (const double bias_m : input.height_bias_m) mean_bias_m += bias_m / kNumWheels;
   for (int k = 0; k <= settings.num_intervals; ++k) {
     Eigen::VectorXd q = sample(reference.nodes, input.reference_time_s + k * settings.dt_s).q;
+    q[kBaseZ] += mean_bias_m;
     if (k == 0) q = input.q;
     setup.q_held.push_back(q);
     setup.reference.push_back(layout.gather(q));

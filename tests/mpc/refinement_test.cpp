@@ -18,7 +18,7 @@ class Refinement : public ::testing::TestWithParam<Case> {
 
 TEST_P(Refinement, TurnsACoarsePlanIntoRollingWithoutSlip) {
   const TerrainMap terrain = test::rolling_ground(GetParam().amplitude_m);
-  const Plan plan = test::arc_plan(terrain, machine_, {2.0, -2.0, 0.0}, GetParam().length_m,
+  const Plan plan = test::arc_plan(terrain, machine_, {2.0, 0.0, 0.0}, GetParam().length_m,
                                    GetParam().curvature_1_m);
   const RefinementSettings settings;
   const Result<RefinedTrajectory> refined = refine(terrain, machine_, plan, settings);
@@ -36,7 +36,7 @@ TEST_P(Refinement, TurnsACoarsePlanIntoRollingWithoutSlip) {
 
 TEST_P(Refinement, KeepsEveryRateWithinItsLimit) {
   const TerrainMap terrain = test::rolling_ground(GetParam().amplitude_m);
-  const Plan plan = test::arc_plan(terrain, machine_, {2.0, -2.0, 0.0}, GetParam().length_m,
+  const Plan plan = test::arc_plan(terrain, machine_, {2.0, 0.0, 0.0}, GetParam().length_m,
                                    GetParam().curvature_1_m);
   const Result<RefinedTrajectory> refined = refine(terrain, machine_, plan);
   ASSERT_TRUE(refined.has_value()) << refined.error().message;
@@ -76,9 +76,9 @@ TEST(RefinementErrors, SaysWhichRowFailsWhenTheGroundCannotBeReached) {
 
 INSTANTIATE_TEST_SUITE_P(Grounds, Refinement,
                          ::testing::Values(Case{"FlatStraight", 0.0, 8.0, 0.0},
-                                           Case{"FlatMinimumRadius", 0.0, 8.0, 1.0 / 4.5},
+                                           Case{"FlatMinimumRadius", 0.0, 6.0, 1.0 / 4.5},
                                            Case{"RollingStraight", 0.12, 10.0, 0.0},
-                                           Case{"RollingCurve", 0.12, 10.0, -0.1}),
+                                           Case{"RollingCurve", 0.12, 8.0, -0.1}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
