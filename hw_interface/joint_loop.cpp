@@ -6,8 +6,9 @@
 namespace wex {
 namespace {
 
-constexpr double kBrakingShare = 0.8;          ///< of the acceleration limit, when closing in
-constexpr double kWheelRestRate_rad_s = 1e-3;  ///< 0.6 mm/s: nothing is asked of the wheel
+constexpr double kBrakingShare = 0.8;           ///< of the acceleration limit, when closing in
+constexpr double kWheelRestRate_rad_s = 1e-3;   ///< 0.6 mm/s: nothing is asked of the wheel
+constexpr double kWheelLatchRate_rad_s = 0.06;  ///< above what a drive yields to on 30 degrees
 
 double slewed(double from, double to, double max_change) noexcept {
   return from + std::clamp(to - from, -max_change, max_change);
@@ -33,6 +34,7 @@ JointLoop::JointLoop(const MachineModel& machine, const JointLoopSettings& setti
     data.gain_1_s =
         delay_s > 0.0 ? std::min(settings.position_gain_1_s, settings.gain_delay_product / delay_s)
                       : settings.position_gain_1_s;
+    if (delay_s > 0.0) data.response_blend = 1.0 - std::exp(-settings.period_s / delay_s);
     data.flow_per_rate = joint.max_effort / machine.pump_pressure_pa;
     data.wheel = joint.role == JointRole::kWheel;
     const bool is_turn = machine.arm && !machine.arm->coordinates.empty() &&
@@ -133,16 +135,20 @@ void JointLoop::update_wheels(const JointCommand* command, const JointMeasuremen
         data.max_acceleration * (end_motion ? settings_.wheel_stop_acceleration_factor : 1.0);
     const double ramp = slewed(previous_rate_[joint], asked, acceleration * settings_.period_s);
     previous_rate_[joint] = ramp;
+    expected_rate_[leg] += data.response_blend * (ramp - expected_rate_[leg]);
     const bool rest =
         std::abs(asked) < kWheelRestRate_rad_s && std::abs(ramp) < kWheelRestRate_rad_s;
     were_all_latched = were_all_latched && latched_[leg];
-    if (rest && !latched_[leg]) latched_angle_rad_[leg] = measured.position[joint];
     if (latched_[leg]) {
       latch_error_rad += wheel_sign_[leg] * (latched_angle_rad_[leg] - measured.position[joint]);
+    } else {
+      latched_angle_rad_[leg] = measured.position[joint];
     }
-    latched_[leg] = rest;
-    if (rest) continue;
-    droop_rad_s += wheel_sign_[leg] * (ramp - measured.rate[joint]);
+    // The wheel runs on for a moment after the ramp: latched earlier, it would be pulled back.
+    const bool still = std::abs(measured.rate[joint]) < kWheelLatchRate_rad_s;
+    latched_[leg] = rest && (latched_[leg] || still);
+    if (latched_[leg]) continue;
+    droop_rad_s += wheel_sign_[leg] * (expected_rate_[leg] - measured.rate[joint]);
     ++driven;
   }
 

@@ -62,7 +62,8 @@ class JointLoop {
   struct JointData {
     double lower = 0.0, upper = 0.0, max_rate = 0.0, max_acceleration = 0.0, max_effort = 0.0;
     double gain_1_s = 0.0;
-    double flow_per_rate = 0.0;  ///< m^3 per rad or m: displacement of the cylinder
+    double response_blend = 1.0;  ///< share of the way to a commanded rate gone in one period
+    double flow_per_rate = 0.0;   ///< m^3 per rad or m: displacement of the cylinder
     bool wheel = false, takes_target = false;
     int leg = -1;  ///< leg whose hip flexion this is
   };
@@ -82,7 +83,8 @@ class JointLoop {
   std::array<int, kNumWheels> wheel_joint_{};  ///< by Limb
   std::array<double, kNumWheels> wheel_sign_{}, latched_angle_rad_{}, stall_clock_s_{};
   std::array<bool, kNumWheels> latched_{};
-  double drive_lag_rad_ = 0.0;  ///< how far the wheels, taken together, are behind the ramp
+  std::array<double, kNumWheels> expected_rate_{};  ///< the ramp after dead time and lag
+  double drive_lag_rad_ = 0.0;  ///< how far the wheels, taken together, are behind that
   int stalled_wheel_ = -1;
   double stalled_direction_ = 0.0;
   long stall_stops_ = 0;
