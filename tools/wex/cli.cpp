@@ -1,0 +1,292 @@
+#include "tools/wex/cli.hpp"
+
+#include <CLI/CLI.hpp>
+#include <map>
+
+#include "models/excavator/mjcf.hpp"
+#include "models/terrain/synthetic.hpp"
+#include "tools/bench/drive_bench.hpp"
+#include "tools/bench/kinematics_bench.hpp"
+#include "tools/bench/mpc_bench.hpp"
+#include "tools/bench/terrain_bench.hpp"
+#include "tools/wex/output_folder.hpp"
+#include "tools/wex/pipeline.hpp"
+
+namespace wex::app {
+namespace {
+
+struct TerrainOptions {
+  std::string kind;
+  double difficulty = 0.0;
+  std::uint64_t seed = 1;
+  std::filesystem::path out;
+};
+
+struct ModelOptions {
+  std::filesystem::path mjcf;
+  std::string machine = "m545";
+};
+
+/// Everything the parser fills.
+struct Options {
+  RunOptions run;
+  bool quiet = false;
+  TerrainOptions terrain;
+  ModelOptions model;
+  DriveBenchOptions drive_bench;
+};
+
+template <typename Parse>
+CLI::Validator parsed_by(Parse parse) {
+  return CLI::Validator(
+      [parse](std::string& text) {
+        const auto value = parse(text);
+        return value ? std::string() : value.error().message;
+      },
+      "");
+}
+
+void add_pose(CLI::App& command, const char* name, std::optional<Pose2>& pose, const char* help) {
+  command
+      .add_option_function<std::string>(
+          name, [&pose](const std::string& text) { pose = *parse_pose(text); }, help)
+      ->check(parsed_by(parse_pose))
+      ->type_name("X,Y,YAW");
+}
+
+void add_machine(CLI::App& command, std::string& machine) {
+  command
+      .add_option("--machine", machine,
+                  "Machine: a name in models/excavator/machines, or a folder with NAME.urdf and "
+                  "NAME.toml")
+      ->type_name("NAME")
+      ->capture_default_str();
+}
+
+void add_planning(CLI::App& command, Options& options) {
+  RunOptions& run = options.run;
+  command
+      .add_option("map", run.map,
+                  "Elevation map: ESRI ASCII grid, GeoTIFF or what else GDAL reads; metres, no CRS "
+                  "or a metric one")
+      ->type_name("MAP")
+      ->required();
+  add_pose(command, "--start", run.start,
+           "Start of the base in the map's frame: metres, metres, radians [the JSON beside MAP]");
+  add_pose(command, "--goal", run.goal, "Goal, likewise [the JSON beside MAP]");
+  command.add_option("--seed", run.seed, "Seed of the planner")
+      ->type_name("N")
+      ->capture_default_str();
+  command.add_option("--out", run.out, "Folder for results and pictures")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command
+      .add_option_function<int>(
+          "--iterations", [&run](int n) { run.iterations = n; },
+          "Planner iterations instead of a time budget: the same seed gives the same plan")
+      ->check(CLI::Range(1, 100'000'000))
+      ->type_name("N");
+  command.add_option("--time-budget", run.time_budget_s, "CPU seconds for the planner's search")
+      ->check(CLI::Range(0.01, 3600.0))
+      ->type_name("S")
+      ->capture_default_str();
+  add_machine(command, run.machine);
+  command.add_flag("--quiet", options.quiet, "No progress on stderr");
+}
+
+void add_run(CLI::App& app, Options& options) {
+  CLI::App& command =
+      *app.add_subcommand("run", "Plan, refine, drive in the simulation and report");
+  command.footer(
+      "Writes result.json, plan.csv, refined.csv, executed.csv, model.xml, overview.png,\n"
+      "timeline.png and frames/ to DIR. Exit codes: 0 goal reached, 1 internal error, 2 bad "
+      "input,\n"
+      "3 no plan, 4 refinement failed, 5 stopped safely, 6 tipped or out of limits.");
+  add_planning(command, options);
+  RunOptions& run = options.run;
+  command
+      .add_option_function<std::string>(
+          "--solve-delay",
+          [&run](const std::string& text) { run.solve_delay_s = *parse_solve_delay(text); },
+          "Delay after which an optimizer's result takes effect: 'measured' CPU time, or "
+          "milliseconds for a repeatable run [measured]")
+      ->check(parsed_by(parse_solve_delay))
+      ->type_name("measured|MS");
+  command.add_option("--frames", run.frames, "Pictures rendered off screen, evenly over the drive")
+      ->check(CLI::Range(0, 99))
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+void add_plan(CLI::App& app, Options& options) {
+  CLI::App& command = *app.add_subcommand("plan", "Plan only: plan.csv, overview.png, result.json");
+  command.footer("Exit codes: 0 plan made, 1 internal error, 2 bad input, 3 no plan.");
+  add_planning(command, options);
+}
+
+void add_terrain(CLI::App& app, TerrainOptions& terrain) {
+  CLI::App& command = *app.add_subcommand(
+      "terrain", "Write a synthetic terrain and, beside it, the JSON with start and goal");
+  std::string kinds;
+  for (const std::string& kind : synthetic_kinds()) kinds += (kinds.empty() ? "" : ", ") + kind;
+  command.add_option("kind", terrain.kind, "One of " + kinds)->type_name("KIND")->required();
+  command
+      .add_option("--difficulty", terrain.difficulty,
+                  "0 to 1: rough +-0.25 to +-2 m, gap 1 to 3.5 m, step 0.5 to 1.5 m; the others "
+                  "have one level")
+      ->type_name("D")
+      ->capture_default_str();
+  command.add_option("--seed", terrain.seed, "Seed of terrain, start and goal")
+      ->type_name("S")
+      ->capture_default_str();
+  command.add_option("--out", terrain.out, "ESRI ASCII grid to write")
+      ->type_name("FILE")
+      ->required();
+}
+
+void add_model(CLI::App& app, ModelOptions& model) {
+  CLI::App& command =
+      *app.add_subcommand("model", "Write the machine's MuJoCo model (the machine alone)");
+  command.add_option("--mjcf", model.mjcf, "File to write")->type_name("FILE")->required();
+  add_machine(command, model.machine);
+}
+
+void add_bench(CLI::App& app, DriveBenchOptions& drive) {
+  CLI::App& command = *app.add_subcommand("bench", "Measure: medians and percentiles on stdout");
+  command.require_subcommand(1);
+  command.add_subcommand("terrain", "Terrain layers and queries");
+  command.add_subcommand("kinematics", "Kinematics with first and second derivatives");
+  command.add_subcommand("mpc", "Refinement and receding-horizon solves");
+  CLI::App& drives = *command.add_subcommand(
+      "drive", "Whole runs over several terrains and seeds: success counts and worst figures");
+  drives.add_option("--seeds", drive.seeds, "Seeds per terrain")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  drives.add_flag("--quick", drive.quick, "One seed of flat and rough only");
+  drives.add_option("--out", drive.out, "Folder for the runs and drive_bench.csv")
+      ->type_name("DIR")
+      ->capture_default_str();
+  drives.add_option("--jobs", drive.jobs, "Runs at a time")
+      ->check(CLI::Range(1, 64))
+      ->type_name("N")
+      ->capture_default_str();
+  drives.add_option("--case", drive.cases, "Only these cases (repeatable) [all]")
+      ->type_name("NAME");
+  drives.add_flag("--resume", drive.resume, "Keep runs whose result.json is there");
+  drives.add_option("--map", drive.real_maps, "Real maps instead of the bundled ones (repeatable)")
+      ->type_name("MAP");
+}
+
+int refuse(std::ostream& err, const Error& error) {
+  err << "wex: " << error.message << "\n";
+  return exit_code(error.code);
+}
+
+int run_command(const Options& options, std::ostream& out, std::ostream& err) {
+  Progress progress(err, options.quiet);
+  const Result<RunReport> report = run_pipeline(options.run, progress);
+  if (!report) return refuse(err, report.error());
+  out << summary_table(*report);
+  if (report->failure) err << "wex: " << report->failure->message << "\n";
+  return exit_code(*report);
+}
+
+int terrain_command(const TerrainOptions& options, std::ostream& out, std::ostream& err) {
+  const Result<SyntheticTerrain> terrain =
+      make_synthetic_terrain(options.kind, options.difficulty, options.seed);
+  if (!terrain) return refuse(err, terrain.error());
+  const std::filesystem::path json_file =
+      std::filesystem::path(options.out).replace_extension("json");
+  if (json_file == options.out) {
+    return refuse(err, {ErrorCode::kBadInput, "--out " + options.out.string() +
+                                                  " is the name of the JSON beside it: "
+                                                  "expected a map name such as map.asc"});
+  }
+  if (const auto written = write_esri_ascii(terrain->raster, options.out); !written) {
+    return refuse(err, written.error());
+  }
+  if (const auto written = write_task(terrain->task, json_file); !written) {
+    return refuse(err, written.error());
+  }
+  out << options.out.string() << "\n" << json_file.string() << "\n";
+  return 0;
+}
+
+int model_command(const ModelOptions& options, std::ostream& out, std::ostream& err) {
+  const Result<MachineModel> machine = load_machine(options.machine);
+  if (!machine) return refuse(err, machine.error());
+  const Result<std::string> text = machine_mjcf(*machine);
+  if (!text) return refuse(err, text.error());
+  if (const auto written = write_text_file(options.mjcf, *text); !written) {
+    return refuse(err, written.error());
+  }
+  out << options.mjcf.string() << "\n";
+  return 0;
+}
+
+int bench_command(const CLI::App& command, const DriveBenchOptions& drive, std::ostream& out,
+                  std::ostream& err) {
+  const std::string name = command.get_subcommands().front()->get_name();
+  if (name == "terrain") return bench_terrain();
+  if (name == "kinematics") return bench_kinematics();
+  if (name == "mpc") return bench_mpc();
+  const Result<int> code = bench_drive(drive, out, err);
+  return code ? *code : refuse(err, code.error());
+}
+
+/// The deepest command named, for its help text.
+const CLI::App& named(const CLI::App& app) {
+  const std::vector<CLI::App*> commands = app.get_subcommands();
+  return commands.empty() ? app : named(*commands.front());
+}
+
+/// What went wrong with the arguments, on one line.
+int refuse_arguments(const CLI::App& app, const CLI::ParseError& error, std::ostream& err) {
+  std::string text = error.what();
+  for (char& c : text) c = c == '\n' ? ' ' : c;
+  std::string command = "wex";
+  for (const CLI::App* level = &app; !level->get_subcommands().empty();) {
+    level = level->get_subcommands().front();
+    command += " " + level->get_name();
+  }
+  err << "wex: " << text << " (see " << command << " --help)\n";
+  return 2;
+}
+
+}  // namespace
+
+int run_cli(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+  Options options;
+  CLI::App app{
+      "wex: planning and driving of a walking excavator over rough ground.\n"
+      "An elevation map and a goal in, a machine that has driven there (in MuJoCo) out.",
+      "wex"};
+  app.set_version_flag("--version", "wex " WEX_VERSION);
+  app.require_subcommand(1);
+  add_run(app, options);
+  add_plan(app, options);
+  add_terrain(app, options.terrain);
+  add_model(app, options.model);
+  add_bench(app, options.drive_bench);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    out << named(app).help();
+    return 0;
+  } catch (const CLI::CallForVersion& version) {
+    out << version.what() << "\n";
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return refuse_arguments(app, error, err);
+  }
+  const CLI::App& command = *app.get_subcommands().front();
+  const std::string name = command.get_name();
+  if (name == "terrain") return terrain_command(options.terrain, out, err);
+  if (name == "model") return model_command(options.model, out, err);
+  if (name == "bench") return bench_command(command, options.drive_bench, out, err);
+  options.run.depth = name == "plan" ? Depth::kPlanOnly : Depth::kDrive;
+  return run_command(options, out, err);
+}
+
+}  // namespace wex::app

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "models/excavator/machine_model.hpp"
+#include "models/terrain/terrain_map.hpp"
+#include "models/types/plan.hpp"
+#include "tools/wex/options.hpp"
+
+namespace wex::app {
+
+/// Everything a run needs to know before it plans. `task` is in the terrain's local world frame.
+struct Scenario {
+  TerrainMap terrain;
+  MachineModel machine;
+  Task task;
+};
+
+/// Pose in the local world frame from one in the map's frame, and back.
+[[nodiscard]] Pose2 local_from_map(const Pose2& pose_map, const TerrainMap& terrain);
+[[nodiscard]] Pose2 map_from_local(const Pose2& pose_local, const TerrainMap& terrain);
+
+/// Reads map, machine and task.
+///   errors  kBadInput from the loaders; no start or goal (says how to give them); a pose that is
+///           not finite or lies off the map
+[[nodiscard]] Result<Scenario> load_scenario(const RunOptions& options);
+
+}  // namespace wex::app
