@@ -267,8 +267,9 @@ std::string format_esri_ascii(const RasterFile& raster) {
   };
   header_line("ncols ", raster.columns);
   header_line("nrows ", raster.rows);
-  // To the micrometre, so that sums such as 15 + -14.95 do not drag their round-off along.
-  const auto to_micrometre = [](double length_m) { return std::round(length_m * 1e6) / 1e6; };
+  // To the micrometre, so that sums such as 15 + -14.95 do not drag their round-off along
+  // (and no minus before a zero).
+  const auto to_micrometre = [](double length_m) { return std::round(length_m * 1e6) / 1e6 + 0.0; };
   header_line("xllcorner ", to_micrometre(raster.west_center_m - 0.5 * raster.cell_x_m));
   header_line("yllcorner ", to_micrometre(raster.south_center_m - 0.5 * raster.cell_y_m));
   header_line("cellsize ", raster.cell_x_m);
