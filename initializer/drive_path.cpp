@@ -111,8 +111,8 @@ std::vector<Station> path_stations(const DrivePath& path, double max_spacing_m) 
     const double s_0 = stations.back().s_m;
     for (int k = 1; k <= steps; ++k) {
       const double along_m = length_m * k / steps;
-      stations.push_back({s_0 + along_m, pose_along(piece, gear * along_m), gear,
-                          k == steps && stops_after});
+      stations.push_back(
+          {s_0 + along_m, pose_along(piece, gear * along_m), gear, k == steps && stops_after});
     }
   }
   return stations;
@@ -147,13 +147,25 @@ std::vector<double> steered_curvature_1_m(const DrivePath& path,
 std::vector<double> moving_average(const std::vector<double>& s, const std::vector<double>& values,
                                    double window_m) {
   WEX_EXPECTS(s.size() == values.size() && !s.empty());
-  const LinearIntegral integral(s, values);
+  // Beyond an end the function goes on as its own mirror image through the end point.
+  std::vector<double> s_beyond, values_beyond;
+  const auto add = [&](double at, double value) {
+    s_beyond.push_back(at);
+    values_beyond.push_back(value);
+  };
+  for (std::size_t i = s.size() - 1; i > 0; --i) {
+    add(2.0 * s.front() - s[i], 2.0 * values.front() - values[i]);
+  }
+  for (std::size_t i = 0; i < s.size(); ++i) add(s[i], values[i]);
+  for (std::size_t i = s.size() - 1; i > 0; --i) {
+    add(2.0 * s.back() - s[i - 1], 2.0 * values.back() - values[i - 1]);
+  }
+  const LinearIntegral integral(s_beyond, values_beyond);
+  const double half_m = std::min(0.5 * window_m, s.back() - s.front());
   std::vector<double> mean(values);
+  if (half_m <= 0.0) return mean;
   for (std::size_t i = 0; i < s.size(); ++i) {
-    const double half_m = std::min({0.5 * window_m, s[i] - s.front(), s.back() - s[i]});
-    if (half_m > 1e-9) {
-      mean[i] = (integral(s[i] + half_m) - integral(s[i] - half_m)) / (2.0 * half_m);
-    }
+    mean[i] = (integral(s[i] + half_m) - integral(s[i] - half_m)) / (2.0 * half_m);
   }
   return mean;
 }

@@ -45,14 +45,14 @@ struct Station {
 [[nodiscard]] std::vector<Station> path_stations(const DrivePath& path, double max_spacing_m);
 
 /// Mean steered curvature over `window_m` around every station: Reeds-Shepp curvature jumps, a
-/// steering cylinder cannot. Rises from zero over half a window at the start, where the wheels stand
-/// straight.
+/// steering cylinder cannot. Rises from zero over half a window at the start, where the wheels
+/// stand straight.
 [[nodiscard]] std::vector<double> steered_curvature_1_m(const DrivePath& path,
                                                         const std::vector<Station>& stations,
                                                         double window_m);
 
-/// Mean of the piecewise linear function through (s, value) over [s - h, s + h] at every sample,
-/// where h is half the window, less near the ends: both end values and straight lines are kept.
+/// Mean of the piecewise linear function through (s, value) over a window around every sample.
+/// Point symmetric beyond the ends, so that end values and straight lines are kept.
 ///   s  not decreasing, as long as values (contract)
 [[nodiscard]] std::vector<double> moving_average(const std::vector<double>& s,
                                                  const std::vector<double>& values,

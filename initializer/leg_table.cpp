@@ -88,8 +88,7 @@ Eigen::Vector3d LegTable::p_base_wheel(double hfe_rad, const Steer& steer) const
 
 Eigen::Vector3d LegTable::dp_base_wheel(double hfe_rad, const Steer& steer) const noexcept {
   const std::size_t index = cell(hfe_rad).index;
-  return samples_per_rad_ *
-         ((samples_[index + 1].wheel - samples_[index].wheel) * steer.weights());
+  return samples_per_rad_ * ((samples_[index + 1].wheel - samples_[index].wheel) * steer.weights());
 }
 
 Eigen::Vector3d LegTable::axle_base(double hfe_rad, const Steer& steer) const noexcept {

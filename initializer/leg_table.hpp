@@ -10,10 +10,11 @@
 
 namespace wex {
 
-/// Where one leg's wheel is in the base frame, and what the leg does to the centre of mass, over hip
-/// flexion and steering, all other joints in transport posture. Sampled densely over hip flexion and
-/// interpolated linearly (error under 20 micrometres at 1.4 m leg length); exact in steering, as any
-/// point behind a hinge is a + b cos(angle) + c sin(angle). Immutable; concurrent reads are safe.
+/// Where one leg's wheel is in the base frame, and what the leg does to the centre of mass, over
+/// hip flexion and steering, all other joints in transport posture. Sampled densely over hip
+/// flexion and interpolated linearly (error under 20 micrometres at 1.4 m leg length); exact in
+/// steering, as any point behind a hinge is a + b cos(angle) + c sin(angle). Immutable; concurrent
+/// reads are safe.
 class LegTable {
  public:
   /// errors  kBadInput: the leg has no hip flexion joint, so it cannot be put on the ground

@@ -20,12 +20,12 @@
 namespace wex {
 namespace {
 
-constexpr double kGoodEnough = 1.02;          // of the Reeds-Shepp length, which no path beats
-constexpr double kWorthwhileShare = 0.99;     // of the tree's cost, to look at a path again
-constexpr double kStagnationShare = 0.25;     // of the time budget without a better plan
-constexpr double kProgressPeriodS = 0.1;      // between two calls of the observer
-constexpr double kBlockRadiusM = 0.5;         // around a pose where a path failed
-constexpr double kBlockYawRad = 0.1;          // 6 degrees
+constexpr double kGoodEnough = 1.02;       // of the Reeds-Shepp length, which no path beats
+constexpr double kWorthwhileShare = 0.99;  // of the tree's cost, to look at a path again
+constexpr double kStagnationShare = 0.25;  // of the time budget without a better plan
+constexpr double kProgressPeriodS = 0.1;   // between two calls of the observer
+constexpr double kBlockRadiusM = 0.5;      // around a pose where a path failed
+constexpr double kBlockYawRad = 0.1;       // 6 degrees
 constexpr std::uint64_t kSeedStride = 0x9E3779B97F4A7C15ULL;  // independent streams per tree
 
 std::string text_of(const Pose2& pose, const Eigen::Vector2d& map_origin_m) {
@@ -247,14 +247,12 @@ class Planning {
 };
 
 std::string Planning::why_not() const {
-  const auto percent = [this](std::uint64_t count) {
-    return std::to_string(100 * count / std::max<std::uint64_t>(1, num_poses_)) + " %";
-  };
   std::vector<std::pair<std::uint64_t, std::string>> reasons;
+  std::uint64_t num_rejected = num_blocked_;
   for (std::size_t i = 1; i < kNumRejections; ++i) {
-    if (rejections_[i] > 0) {
-      reasons.emplace_back(rejections_[i], describe(static_cast<Rejection>(i)));
-    }
+    if (rejections_[i] == 0) continue;
+    reasons.emplace_back(rejections_[i], describe(static_cast<Rejection>(i)));
+    num_rejected += rejections_[i];
   }
   if (num_blocked_ > 0) reasons.emplace_back(num_blocked_, "near a place where a path failed");
   std::sort(reasons.rbegin(), reasons.rend());
@@ -262,11 +260,12 @@ std::string Planning::why_not() const {
   char effort[96];
   std::snprintf(effort, sizeof effort, "%.2f s of computing and %d iterations", elapsed_s(),
                 iterations_);
-  std::string text = "no plan from start to goal in " + std::string(effort) + "; of " +
-                     std::to_string(num_poses_) + " poses tried ";
-  text += reasons.empty() ? "none was rejected" : "these shares were rejected: ";
+  std::string text = "no plan from start to goal in " + std::string(effort) + "; " +
+                     std::to_string(num_rejected) + " of " + std::to_string(num_poses_) +
+                     " poses tried were rejected";
   for (std::size_t i = 0; i < reasons.size(); ++i) {
-    text += (i > 0 ? ", " : "") + reasons[i].second + " " + percent(reasons[i].first);
+    text += (i == 0 ? ": " : ", ") + reasons[i].second + " " +
+            std::to_string(100 * reasons[i].first / num_rejected) + " %";
   }
   if (num_failed_paths_ > 0) {
     text += "; " + std::to_string(num_failed_paths_) +

@@ -9,27 +9,39 @@
 namespace wex {
 namespace {
 
-constexpr double kJointMarginRad = 0.02;     // keeps hip flexion off its end stops
-constexpr double kHeightToleranceM = 1e-5;   // wheel centre against the ground
-constexpr double kBellySpacingM = 0.2;       // two cells of the usual map
-constexpr double kUngroundedCost = 1000.0;   // dominates every other term of Algorithm 1
+constexpr double kJointMarginRad = 0.02;    // keeps hip flexion off its end stops
+constexpr double kHeightToleranceM = 1e-5;  // wheel centre against the ground
+constexpr double kBellySpacingM = 0.2;      // two cells of the usual map
+constexpr double kUngroundedCost = 1000.0;  // dominates every other term of Algorithm 1
 constexpr int kMaxGroundingSteps = 40;
-constexpr double kTableErrorM = 1e-4;        // added to every demand: tables err by less
+constexpr int kNumHeightSteps = 3;  // 0, 0.2 and 0.4 m above the standing height
+constexpr double kHeightStepM = 0.2;
+constexpr double kTableErrorM = 1e-4;  // added to every demand: tables err by less
 
 }  // namespace
 
 std::string describe(Rejection rejection) {
   switch (rejection) {
-    case Rejection::kNone: return "nothing";
-    case Rejection::kOffMap: return "off the map";
-    case Rejection::kUnknownGround: return "unknown ground";
-    case Rejection::kTilt: return "too much tilt";
-    case Rejection::kUntraversable: return "a wheel on untraversable ground";
-    case Rejection::kNearUntraversable: return "a wheel too close to untraversable ground";
-    case Rejection::kOutOfReach: return "ground out of a wheel's reach";
-    case Rejection::kSteeringLimit: return "steering at its limit";
-    case Rejection::kBelly: return "too little clearance under the chassis";
-    case Rejection::kUnstable: return "too little stability margin";
+    case Rejection::kNone:
+      return "nothing";
+    case Rejection::kOffMap:
+      return "off the map";
+    case Rejection::kUnknownGround:
+      return "unknown ground";
+    case Rejection::kTilt:
+      return "too much tilt";
+    case Rejection::kUntraversable:
+      return "a wheel on untraversable ground";
+    case Rejection::kNearUntraversable:
+      return "a wheel too close to untraversable ground";
+    case Rejection::kOutOfReach:
+      return "ground out of a wheel's reach";
+    case Rejection::kSteeringLimit:
+      return "steering at its limit";
+    case Rejection::kBelly:
+      return "too little clearance under the chassis";
+    case Rejection::kUnstable:
+      return "too little stability margin";
   }
   return "an unnamed reason";
 }
@@ -43,13 +55,20 @@ std::string describe(const StandingPose& pose, const Eigen::Vector2d& map_origin
           ? "wheel " + std::string(kLimbNames[static_cast<std::size_t>(pose.wheel)]) + " would be "
           : std::string("the machine would be ");
   switch (pose.rejection) {
-    case Rejection::kOffMap: return who + "off the map" + at;
-    case Rejection::kUnknownGround: return who + "over unknown ground" + at;
-    case Rejection::kUntraversable: return who + "in an untraversable spot" + at;
-    case Rejection::kNearUntraversable: return who + "too close to an untraversable spot" + at;
-    case Rejection::kOutOfReach: return who + "out of reach of the ground" + at;
-    case Rejection::kSteeringLimit: return who + "beyond its steering limit" + at;
-    default: return describe(pose.rejection) + at;
+    case Rejection::kOffMap:
+      return who + "off the map" + at;
+    case Rejection::kUnknownGround:
+      return who + "over unknown ground" + at;
+    case Rejection::kUntraversable:
+      return who + "in an untraversable spot" + at;
+    case Rejection::kNearUntraversable:
+      return who + "too close to an untraversable spot" + at;
+    case Rejection::kOutOfReach:
+      return who + "out of reach of the ground" + at;
+    case Rejection::kSteeringLimit:
+      return who + "beyond its steering limit" + at;
+    default:
+      return describe(pose.rejection) + at;
   }
 }
 
@@ -156,8 +175,8 @@ PoseCheck::Grounding PoseCheck::ground_leg(const Eigen::Isometry3d& T_world_base
     grounding.hfe_rad = hfe;
     grounding.p_world_wheel = p_world;
     if (std::isnan(gap)) {
-      grounding.rejection = terrain_->contains(p_world.head<2>()) ? Rejection::kUnknownGround
-                                                                   : Rejection::kOffMap;
+      grounding.rejection =
+          terrain_->contains(p_world.head<2>()) ? Rejection::kUnknownGround : Rejection::kOffMap;
       return grounding;
     }
     if (std::abs(gap) < kHeightToleranceM) {
@@ -169,8 +188,7 @@ PoseCheck::Grounding PoseCheck::ground_leg(const Eigen::Isometry3d& T_world_base
     lower_tried |= hfe <= lower;
     upper_tried |= hfe >= upper;
 
-    const double table_slope =
-        T_world_base.linear().row(2).dot(table.dp_base_wheel(hfe, steer));
+    const double table_slope = T_world_base.linear().row(2).dot(table.dp_base_wheel(hfe, steer));
     double slope = table_slope;
     if (i > 0 && hfe != last_hfe) {
       const double secant = (gap - last_gap) / (hfe - last_hfe);
@@ -189,7 +207,8 @@ PoseCheck::Grounding PoseCheck::ground_leg(const Eigen::Isometry3d& T_world_base
       hfe = 0.5 * (too_low + too_high);
     }
   }
-  grounding.rejection = Rejection::kOutOfReach;
+  grounding.rejection = ground_under(grounding.p_world_wheel.head<2>());
+  if (grounding.rejection == Rejection::kNone) grounding.rejection = Rejection::kOutOfReach;
   return grounding;
 }
 
@@ -301,30 +320,55 @@ StandingPose PoseCheck::stand(const Pose2& pose, const Steering& steering) const
   best.rejection = Rejection::kUnknownGround;
   double lowest_cost = std::numeric_limits<double>::infinity();
   bool tilted_only = true;
-  for (std::size_t n = 0; n < num_candidates; ++n) {
-    const Tilt tilt = tilt_from_normal(normals[n], pose.yaw_rad);
-    if (std::abs(tilt.roll_rad) > settings_.max_tilt_rad ||
+  const auto propose = [&](const Tilt& tilt, double height_m) {
+    if (std::isnan(height_m) || std::abs(tilt.roll_rad) > settings_.max_tilt_rad ||
         std::abs(tilt.pitch_rad) > settings_.max_tilt_rad) {
-      continue;
+      return;
     }
     tilted_only = false;
-    for (std::size_t h = 0; h < num_candidates; ++h) {
-      if (std::isnan(heights[h])) continue;
-      BaseCoordinates base;
-      base << pose.x_m, pose.y_m, heights[h] + machine_->default_base_height_m, pose.yaw_rad,
-          tilt.pitch_rad, tilt.roll_rad;
-      const Eigen::Isometry3d T_world_base = T_world_base_from(base);
-      const Trial trial = try_base(base, T_world_base, steering);
-      if (best.ok() && trial.cost >= lowest_cost) continue;
-      const StandingPose candidate = judge(base, T_world_base, trial, steering);
-      if (candidate.ok() || (!best.ok() && trial.cost < lowest_cost)) {
-        best = candidate;
-        lowest_cost = trial.cost;
-      }
+    BaseCoordinates base;
+    base << pose.x_m, pose.y_m, height_m + machine_->default_base_height_m, pose.yaw_rad,
+        tilt.pitch_rad, tilt.roll_rad;
+    const Eigen::Isometry3d T_world_base = T_world_base_from(base);
+    const Trial trial = try_base(base, T_world_base, steering);
+    if (best.ok() && trial.cost >= lowest_cost) return;
+    const StandingPose candidate = judge(base, T_world_base, trial, steering);
+    if (candidate.ok() || (!best.ok() && trial.cost < lowest_cost)) {
+      best = candidate;
+      lowest_cost = trial.cost;
+    }
+  };
+  for (std::size_t n = 0; n < num_candidates; ++n) {
+    const Tilt tilt = tilt_from_normal(normals[n], pose.yaw_rad);
+    for (std::size_t h = 0; h < num_candidates; ++h) propose(tilt, heights[h]);
+  }
+
+  // A bump or a twist between the wheels is in none of the sixteen: ask the wheels themselves, and
+  // raise the chassis if need be.
+  if (!best.ok()) {
+    const auto [tilt, height_m] = plane_under_wheels(pose);
+    for (int i = 0; i < kNumHeightSteps && !best.ok(); ++i) {
+      propose(tilt, height_m + i * kHeightStepM);
     }
   }
-  if (tilted_only) best.rejection = Rejection::kTilt;
+  if (!best.ok() && tilted_only) best.rejection = Rejection::kTilt;
   return best;
+}
+
+PoseCheck::GroundPlane PoseCheck::plane_under_wheels(const Pose2& pose) const {
+  const Eigen::Isometry2d T_world_level =
+      Eigen::Translation2d(pose.x_m, pose.y_m) * Eigen::Rotation2Dd(pose.yaw_rad);
+  // Least squares of height = plane . (1, forward, left) over the four wheels.
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d sums = Eigen::Vector3d::Zero();
+  for (const LegTable& leg : legs_) {
+    const Eigen::Vector3d p_base = leg.p_base_wheel(leg.hfe_default_rad(), LegTable::Steer());
+    const Eigen::Vector3d row(1.0, p_base.x(), p_base.y());
+    squares += row * row.transpose();
+    sums += row * terrain_->dilated_height_m(T_world_level * p_base.head<2>());
+  }
+  const Eigen::Vector3d plane = squares.inverse() * sums;
+  return {tilt_from_normal(Eigen::Vector3d(-plane[1], -plane[2], 1.0).normalized(), 0.0), plane[0]};
 }
 
 }  // namespace wex

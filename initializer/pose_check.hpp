@@ -30,7 +30,7 @@ inline constexpr std::size_t kNumRejections = 10;
 /// The machine on its four wheels. Meaningful beyond `rejection` and `wheel` only if it can stand.
 struct StandingPose {
   Rejection rejection = Rejection::kNone;
-  int wheel = -1;                    ///< the wheel to blame, -1 if none
+  int wheel = -1;                                            ///< the wheel to blame, -1 if none
   Eigen::Vector2d where_world_xy = Eigen::Vector2d::Zero();  ///< what the rejection is about [m]
   BaseCoordinates base = BaseCoordinates::Zero();
   std::array<double, kNumWheels> hfe_rad{}, steer_rad{};
@@ -45,6 +45,12 @@ struct StandingPose {
 /// The same without the place, for counts.
 [[nodiscard]] std::string describe(Rejection rejection);
 
+/// Roll and pitch of a base whose z axis is the given unit normal, at the given yaw.
+struct Tilt {
+  double roll_rad = 0.0, pitch_rad = 0.0;
+};
+[[nodiscard]] Tilt tilt_from_normal(const Eigen::Vector3d& normal_world, double yaw_rad);
+
 /// Can the machine stand on its four wheels, arm in transport posture? The paper's Algorithm 1
 /// (candidate heights and normals) and Algorithm 2 for four contacts. Refers to terrain and
 /// machine, which must outlive it. Immutable, allocation-free queries, safe for concurrent use.
@@ -58,8 +64,9 @@ class PoseCheck {
                                                const PlanSettings& settings);
 
   /// Base height, roll and pitch by Algorithm 1: of all candidates that can stand the one with the
-  /// lowest cost, so that a demand which is dropped never makes a pose fail. If none can stand, the
-  /// rejection is that of the candidate with the lowest cost.
+  /// lowest cost, so that a demand which is dropped never makes a pose fail. Where legs do not
+  /// reach or the chassis is too low, also the plane under the four wheels, up to 0.4 m higher. If
+  /// none can stand, the rejection is that of the candidate with the lowest cost.
   [[nodiscard]] StandingPose stand(const Pose2& pose, const Steering& steering) const;
 
   /// The same with the base given: wheels on the ground by hip flexion, then every check.
@@ -85,10 +92,16 @@ class PoseCheck {
     int num_ungrounded = 0;
   };
 
+  struct GroundPlane {
+    Tilt tilt;
+    double height_m = 0.0;  ///< under the base origin; NaN where a wheel has no known ground
+  };
+
   PoseCheck(const TerrainMap& terrain, const MachineModel& machine, const PlanSettings& settings,
             std::array<LegTable, kNumWheels> legs);
   [[nodiscard]] Grounding ground_leg(const Eigen::Isometry3d& T_world_base, int leg,
                                      const LegTable::Steer& steer) const;
+  [[nodiscard]] GroundPlane plane_under_wheels(const Pose2& pose) const;
   [[nodiscard]] Rejection ground_under(const Eigen::Vector2d& p_world_xy) const;
   [[nodiscard]] Trial try_base(const BaseCoordinates& base, const Eigen::Isometry3d& T_world_base,
                                const Steering& steering) const;
@@ -108,15 +121,9 @@ class PoseCheck {
   std::vector<Eigen::Vector3d> p_base_belly_;  ///< samples of the chassis' underside
 };
 
-/// Signed distance of a point to the nearest edge line of the quadrilateral LF, LH, RH, RF; positive
-/// inside [m].
+/// Signed distance of a point to the nearest edge line of the quadrilateral LF, LH, RH, RF;
+/// positive inside [m].
 [[nodiscard]] double support_margin_m(const Eigen::Vector2d& p,
                                       const std::array<Eigen::Vector2d, kNumWheels>& contacts);
-
-/// Roll and pitch of a base whose z axis is the given unit normal, at the given yaw.
-struct Tilt {
-  double roll_rad = 0.0, pitch_rad = 0.0;
-};
-[[nodiscard]] Tilt tilt_from_normal(const Eigen::Vector3d& normal_world, double yaw_rad);
 
 }  // namespace wex

@@ -13,7 +13,8 @@ constexpr double kLeastGainM = 1e-3;  // not worth a check below
 DrivePath cut(const DrivePath& path) {
   DrivePath pieces;
   for (const PathSegment& segment : path) {
-    const int n = std::max(1, static_cast<int>(std::ceil(std::abs(segment.length_m) / kAnchorSpacingM)));
+    const int n =
+        std::max(1, static_cast<int>(std::ceil(std::abs(segment.length_m) / kAnchorSpacingM)));
     for (int k = 0; k < n; ++k) {
       pieces.push_back({pose_along(segment, segment.length_m * k / n), segment.curvature_1_m,
                         segment.length_m / n});

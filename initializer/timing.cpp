@@ -34,7 +34,8 @@ void assign_times(const MachineModel& machine, const std::vector<Station>& stati
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const double time_s =
         shortest_time_s(machine, nodes[i].q, nodes[i + 1].q, settings.rate_fraction);
-    const double limit = time_s > 0.0 ? step_m(i) / time_s : std::numeric_limits<double>::infinity();
+    const double limit =
+        time_s > 0.0 ? step_m(i) / time_s : std::numeric_limits<double>::infinity();
     speed[i] = std::min(speed[i], limit);
     speed[i + 1] = std::min(speed[i + 1], limit);
   }

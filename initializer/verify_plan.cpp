@@ -42,7 +42,8 @@ class Verifier {
     for (int j = 0; j < machine_.num_joints(); ++j) {
       const Joint& joint = machine_.joints[static_cast<std::size_t>(j)];
       const double value = node.q[kNumBaseCoordinates + j];
-      if (!joint.continuous && !(value >= joint.lower - kRounding && value <= joint.upper + kRounding)) {
+      if (!joint.continuous &&
+          !(value >= joint.lower - kRounding && value <= joint.upper + kRounding)) {
         return with_number(joint.name + " beyond its limits:", value);
       }
     }

@@ -6,7 +6,7 @@
 namespace wex {
 namespace {
 
-constexpr double kShareStep = 0.25;     // how fast smoothing is given up where it does not fit
+constexpr double kShareStep = 0.25;      // how fast smoothing is given up where it does not fit
 constexpr double kShareSlope_1_m = 1.0;  // and how fast it may change along the path
 constexpr int kSteeringRounds = 2;       // steering moves the wheel, the wheel its hip flexion
 
@@ -72,6 +72,7 @@ void spin_wheels(const MachineModel& machine, std::vector<WholeBodyNode>& nodes)
   for (std::size_t i = 1; i < nodes.size(); ++i) {
     machine.tree.update(nodes[i].q, after);
     for (const WheeledLeg& leg : machine.legs) {
+      if (leg.wheel < 0) continue;
       const auto wheel = [&](const KinematicTree::Workspace& w) {
         return machine.tree.position(w, leg.carrier_body, leg.p_carrier_wheel);
       };
@@ -87,8 +88,8 @@ void spin_wheels(const MachineModel& machine, std::vector<WholeBodyNode>& nodes)
       const Eigen::AngleAxisd turn(before.T_world_body[carrier].linear().transpose() *
                                    after.T_world_body[carrier].linear());
       const double carried_rad = turn.angle() * turn.axis().dot(leg.axle_carrier);
-      nodes[i].q[leg.wheel] = nodes[i - 1].q[leg.wheel] +
-                              leg.wheel_sign * (travel_m / leg.radius_m - carried_rad);
+      nodes[i].q[leg.wheel] =
+          nodes[i - 1].q[leg.wheel] + leg.wheel_sign * (travel_m / leg.radius_m - carried_rad);
     }
     std::swap(before, after);
   }

@@ -63,7 +63,8 @@ class SteeringSpace : public ob::ReedsSheppStateSpace {
     Pose2 pose = pose_of(a);
     for (int i = 0; i < 5; ++i) {
       if (curve.type_[i] == RS_NOP || curve.length_[i] == 0.0) continue;
-      const double turn = curve.type_[i] == RS_LEFT ? 1.0 : (curve.type_[i] == RS_RIGHT ? -1.0 : 0.0);
+      const double turn =
+          curve.type_[i] == RS_LEFT ? 1.0 : (curve.type_[i] == RS_RIGHT ? -1.0 : 0.0);
       path.push_back({pose, turn / rho_, curve.length_[i] * rho_});
       pose = pose_along(path.back(), path.back().length_m);
     }
@@ -196,8 +197,8 @@ bool path_is_valid(const DrivePath& path, double spacing_m, const PoseValidity& 
     const int steps =
         std::max(1, static_cast<int>(std::ceil(std::abs(segment.length_m) / spacing_m - 1e-9)));
     for (int k = 0; k <= steps; ++k) {  // both ends: the steering differs from the neighbour's
-      subnodes.push_back({pose_along(segment, segment.length_m * k / steps),
-                          segment.curvature_1_m});
+      subnodes.push_back(
+          {pose_along(segment, segment.length_m * k / steps), segment.curvature_1_m});
     }
   }
   const std::size_t n = subnodes.size();
@@ -236,8 +237,8 @@ struct Se2Search::Impl {
     auto si = std::make_shared<ob::SpaceInformation>(space);
     si->setStateValidityChecker(
         [this](const ob::State* state) { return is_valid(pose_of(state), 0.0); });
-    si->setMotionValidator(std::make_shared<PathValidator>(si, space.get(),
-                                                           settings.subnode_spacing_m, is_valid));
+    si->setMotionValidator(
+        std::make_shared<PathValidator>(si, space.get(), settings.subnode_spacing_m, is_valid));
     si->setup();
 
     problem = std::make_shared<ob::ProblemDefinition>(si);
@@ -264,8 +265,7 @@ struct Se2Search::Impl {
 
   std::optional<DrivePath> solution() {
     if (!problem->hasExactSolution()) return std::nullopt;
-    const auto geometric =
-        std::static_pointer_cast<og::PathGeometric>(problem->getSolutionPath());
+    const auto geometric = std::static_pointer_cast<og::PathGeometric>(problem->getSolutionPath());
     DrivePath path;
     for (std::size_t i = 0; i + 1 < geometric->getStateCount(); ++i) {
       append_path(path, space->path(geometric->getState(static_cast<unsigned>(i)),

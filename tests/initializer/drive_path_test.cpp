@@ -1,0 +1,98 @@
+#include "initializer/drive_path.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "initializer/internal/se2_search.hpp"
+
+namespace wex {
+namespace {
+
+constexpr double kRadiusM = 4.5;
+
+void expect_near(const Pose2& a, const Pose2& b, double tolerance) {
+  EXPECT_NEAR(a.x_m, b.x_m, tolerance);
+  EXPECT_NEAR(a.y_m, b.y_m, tolerance);
+  EXPECT_NEAR(wrap_angle(a.yaw_rad - b.yaw_rad), 0.0, tolerance);
+}
+
+TEST(DrivePath, QuarterCircleToTheLeftEndsOneRadiusAheadAndBeside) {
+  const PathSegment arc{{0.0, 0.0, 0.0}, 1.0 / kRadiusM, 0.5 * std::numbers::pi * kRadiusM};
+  expect_near(pose_along(arc, arc.length_m), {kRadiusM, kRadiusM, 0.5 * std::numbers::pi}, 1e-12);
+}
+
+TEST(DrivePath, DrivingBackwardsWithWheelsToTheLeftTurnsTheNoseRight) {
+  const PathSegment arc{{0.0, 0.0, 0.0}, 1.0 / kRadiusM, -1.0};
+  EXPECT_NEAR(pose_along(arc, arc.length_m).yaw_rad, -1.0 / kRadiusM, 1e-12);
+}
+
+TEST(DrivePath, ReedsSheppPathsEndAtTheirGoal) {
+  for (const Pose2& goal : {Pose2{15.0, 1.0, 0.1}, Pose2{0.0, 3.0, 0.0}, Pose2{-4.0, 0.5, 2.5},
+                            Pose2{1.0, -1.0, -3.0}, Pose2{0.0, 0.0, 1.5}}) {
+    const Pose2 start{0.3, -0.2, 9.0};  // more than a whole turn: must be kept
+    const DrivePath path = reeds_shepp_path(start, goal, kRadiusM);
+    EXPECT_EQ(path.front().start, start);
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      EXPECT_NEAR(pose_along(path[i - 1], path[i - 1].length_m).yaw_rad, path[i].start.yaw_rad,
+                  1e-9);
+    }
+    expect_near(pose_along(path.back(), path.back().length_m), goal, 1e-6);
+  }
+}
+
+TEST(DrivePath, ReversingAndChangesOfDirectionCostExtra) {
+  const PathCostWeights weights{.cusp_m = 1.5, .reverse_share = 0.2};
+  const DrivePath path{{{0.0, 0.0, 0.0}, 0.0, 3.0}, {{3.0, 0.0, 0.0}, 0.0, -2.0}};
+  EXPECT_DOUBLE_EQ(path_length_m(path), 5.0);
+  EXPECT_DOUBLE_EQ(path_cost_m(path, weights), 3.0 + 1.5 + 2.0 * 1.2);
+}
+
+TEST(DrivePath, StationsAreCloseTogetherAndStopAtEndsAndCusps) {
+  const DrivePath path = reeds_shepp_path({0.0, 0.0, 0.0}, {0.0, 2.0, 0.0}, kRadiusM);
+  const auto stations = path_stations(path, 0.2);
+  int num_stops = 0;
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    num_stops += stations[i].stop;
+    if (i == 0) continue;
+    EXPECT_LE(stations[i].s_m - stations[i - 1].s_m, 0.2 + 1e-9);
+    EXPECT_GT(stations[i].s_m, stations[i - 1].s_m);
+    EXPECT_FALSE(stations[i].stop && stations[i - 1].stop) << "no room to move at station " << i;
+  }
+  EXPECT_NEAR(stations.back().s_m, path_length_m(path), 1e-5);
+  EXPECT_GE(num_stops, 3) << "moving sideways takes at least one change of direction";
+  EXPECT_TRUE(stations.front().stop && stations.back().stop);
+}
+
+TEST(DrivePath, SteeredCurvatureStartsAtZeroChangesGraduallyAndReachesTheArcs) {
+  const DrivePath path{{{0.0, 0.0, 0.0}, 1.0 / kRadiusM, 5.0},
+                       {{0.0, 0.0, 0.0}, -1.0 / kRadiusM, 5.0}};
+  const auto stations = path_stations(path, 0.1);
+  const auto curvature = steered_curvature_1_m(path, stations, 2.0);
+  EXPECT_EQ(curvature.front(), 0.0);
+  EXPECT_NEAR(curvature[25], 1.0 / kRadiusM, 1e-12);  // 2.5 m: the middle of the first arc
+  EXPECT_NEAR(curvature[50], 0.0, 1e-12);             // where one arc meets the other
+  EXPECT_NEAR(curvature[75], -1.0 / kRadiusM, 1e-12);
+  for (std::size_t i = 1; i < curvature.size(); ++i) {
+    EXPECT_LT(std::abs(curvature[i] - curvature[i - 1]), 0.16 / kRadiusM);
+  }
+}
+
+TEST(DrivePath, MovingAverageKeepsStraightLinesAndEndValuesAndTamesSteps) {
+  std::vector<double> s, line, step;
+  for (int i = 0; i <= 40; ++i) {
+    s.push_back(0.1 * i + (i % 3) * 0.01);
+    line.push_back(2.0 - 3.0 * s.back());
+    step.push_back(i < 20 ? 0.0 : 1.0);
+  }
+  const auto mean_line = moving_average(s, line, 1.0);
+  for (std::size_t i = 0; i < s.size(); ++i) EXPECT_NEAR(mean_line[i], line[i], 1e-9);
+  const auto mean_step = moving_average(s, step, 1.0);
+  EXPECT_NEAR(mean_step.front(), 0.0, 1e-12);
+  EXPECT_NEAR(mean_step.back(), 1.0, 1e-12);
+  for (std::size_t i = 1; i < s.size(); ++i) EXPECT_LT(mean_step[i] - mean_step[i - 1], 0.15);
+}
+
+}  // namespace
+}  // namespace wex

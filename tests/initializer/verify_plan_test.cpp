@@ -1,0 +1,98 @@
+#include "initializer/verify_plan.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "tests/initializer/test_worlds.hpp"
+
+namespace wex {
+namespace {
+
+using testing::HasSubstr;
+
+class VerifyPlan : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto made = make_plan(map_, test_machine(), {{-4.0, 0.0, 0.0}, {4.0, 0.0, 0.0}});
+    ASSERT_TRUE(made) << made.error().message;
+    plan_ = *std::move(made);
+  }
+  [[nodiscard]] PlanVerdict verdict() const { return verify_plan(map_, test_machine(), plan_); }
+
+  TerrainMap map_ = flat_map();
+  Plan plan_;
+};
+
+TEST_F(VerifyPlan, AcceptsWhatThePlannerReturns) {
+  const PlanVerdict seen = verdict();
+  EXPECT_TRUE(seen.ok) << seen.violation;
+  EXPECT_LT(seen.worst_height_error_m, 1e-4);
+  EXPECT_DOUBLE_EQ(seen.min_stability_margin_m, plan_.min_stability_margin_m);
+}
+
+TEST_F(VerifyPlan, SeesAWheelOffTheGround) {
+  plan_.nodes[7].q[kBaseZ] += 2e-3;
+  EXPECT_THAT(verdict().violation, HasSubstr("node 7: wheel LF off the ground"));
+}
+
+TEST_F(VerifyPlan, SeesAJointBeyondItsLimits) {
+  plan_.nodes[3].q[test_machine().legs[1].steer] = 1.5;
+  EXPECT_THAT(verdict().violation, HasSubstr("node 3: RF_STEER beyond its limits"));
+}
+
+TEST_F(VerifyPlan, SeesTooMuchTilt) {
+  plan_.nodes[5].q[kBaseRoll] = 0.4;
+  EXPECT_THAT(verdict().violation, HasSubstr("tilt"));
+}
+
+TEST_F(VerifyPlan, SeesARateBeyondItsShareOfTheLimit) {
+  const int wheel = test_machine().legs[2].wheel;
+  plan_.nodes[9].q[wheel] += 0.9;
+  EXPECT_THAT(verdict().violation, HasSubstr("rate of LH_WHEEL"));
+}
+
+TEST_F(VerifyPlan, SeesTimeThatDoesNotIncrease) {
+  plan_.nodes[4].t_s = plan_.nodes[3].t_s;
+  EXPECT_THAT(verdict().violation, HasSubstr("node 4: time"));
+}
+
+TEST_F(VerifyPlan, SeesNodesTooFarApart) {
+  plan_.nodes.erase(plan_.nodes.begin() + 6);
+  EXPECT_THAT(verdict().violation, HasSubstr("distance to the next node"));
+}
+
+TEST_F(VerifyPlan, SeesAWrongEnd) {
+  plan_.task.goal.x_m += 0.01;
+  EXPECT_THAT(verdict().violation, HasSubstr("not at the goal"));
+}
+
+TEST_F(VerifyPlan, SeesAStabilityMarginBelowTheDemand) {
+  PlanSettings settings;
+  settings.min_stability_margin_m = plan_.min_stability_margin_m + 0.01;
+  EXPECT_THAT(verify_plan(map_, test_machine(), plan_, settings).violation,
+              HasSubstr("stability margin"));
+}
+
+TEST_F(VerifyPlan, SeesTooLittleClearanceUnderTheChassis) {
+  PlanSettings settings;
+  settings.belly_clearance_m = 0.7;
+  EXPECT_THAT(verify_plan(map_, test_machine(), plan_, settings).violation,
+              HasSubstr("clearance under the chassis"));
+}
+
+TEST_F(VerifyPlan, SeesGroundThatIsNotTraversable) {
+  const TerrainMap with_pit = make_map(40.0, 30.0, [](double x, double y) {
+    return std::hypot(x - 4.0, y - 1.5) < 1.0 ? -2.0 : 0.0;
+  });
+  EXPECT_THAT(verify_plan(with_pit, test_machine(), plan_).violation,
+              HasSubstr("untraversable ground"));
+}
+
+TEST_F(VerifyPlan, SeesValuesThatAreNotNumbers) {
+  plan_.nodes[2].q[kBaseX] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(verdict().violation, HasSubstr("not finite"));
+}
+
+}  // namespace
+}  // namespace wex
