@@ -209,7 +209,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadEnd{"OffTheMap", {31.0, 0.0, 0.0}, "off the map"},
         BadEnd{"OnUnknownGround", {-20.0, -20.0, 0.0}, "unknown ground"},
-        BadEnd{"InAPit", {-15.0 - 2.5, 15.0 - 1.5, 0.0}, "wheel LF would be in an untraversable"},
+        BadEnd{"InAPit", {-15.0 - 2.5, 15.0 - 1.5, 0.0}, "untraversable spot"},
         BadEnd{"OnASteepSlope", {15.0, 25.0, 0.0}, "too much tilt"},
         BadEnd{"NotANumber", {0.0, std::numeric_limits<double>::quiet_NaN(), 0.0}, "finite"},
         BadEnd{"InfiniteYaw", {0.0, 0.0, std::numeric_limits<double>::infinity()}, "finite"}),
