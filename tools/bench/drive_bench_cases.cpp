@@ -26,7 +26,7 @@ constexpr SyntheticCase kSyntheticCases[] = {{"flat", "flat", 0.0},
 
 std::vector<std::filesystem::path> real_maps(const DriveBenchOptions& options) {
   if (!options.real_maps.empty()) return options.real_maps;
-  return {std::filesystem::path(WEX_SCENARIOS_DIR) / "real_hills.tif"};
+  return {std::filesystem::path(WEX_SCENARIOS_DIR) / "real_minnesota.tif"};
 }
 
 /// Start and goal drawn over a real map: anywhere the machine can stand, far enough apart.

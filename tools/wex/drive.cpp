@@ -57,6 +57,9 @@ class Loop {
       if (!finished_) check_arrival();
       if (finished_) break;
       take_pending_result();
+      if (tick_ > 0) {
+        progress_.advance(settings_.control_period_s, q_.head<kNumBaseCoordinates>());
+      }
       if (tick_ >= next_solve_tick_) solve();
       check_trajectory_age();
       if (finished_) break;
@@ -194,9 +197,6 @@ class Loop {
   }
 
   void solve() {
-    const double since_last_s = (tick_ - last_solve_tick_) * settings_.control_period_s;
-    progress_.advance(since_last_s, q_.head<kNumBaseCoordinates>());
-    last_solve_tick_ = tick_;
     const int expected = expected_delay_ticks();
 
     HorizonInput input;
@@ -287,7 +287,7 @@ class Loop {
 
   double t0_s_ = 0.0;
   double yaw_turns_rad_ = 0.0;
-  int tick_ = 0, last_solve_tick_ = 0, next_solve_tick_ = 0;
+  int tick_ = 0, next_solve_tick_ = 0;
   MachineState state_;
   Eigen::VectorXd q_;
   GroundTruth truth_, truth_at_start_;

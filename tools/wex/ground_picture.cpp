@@ -59,11 +59,16 @@ std::pair<double, double> height_range_m(const Grid& elevation, const MapWindow&
   return lo <= hi ? std::pair{lo, hi} : std::pair{0.0, 1.0};
 }
 
+std::pair<double, double> tint_range_m(const Grid& elevation, const MapWindow& window) {
+  constexpr double kLeastRangeM = 0.5;
+  const auto [lo, hi] = height_range_m(elevation, window);
+  const double middle = 0.5 * (lo + hi), half = 0.5 * std::max(hi - lo, kLeastRangeM);
+  return {middle - half, middle + half};
+}
+
 std::vector<std::uint32_t> ground_pixels(const TerrainMap& terrain, const MapWindow& window) {
   const Grid& z = terrain.elevation();
-  const auto [lo, hi] = height_range_m(z, window);
-  constexpr double kLeastRangeM = 0.5;  // nearly flat ground should not look like mountains
-  const double middle = 0.5 * (lo + hi), half = 0.5 * std::max(hi - lo, kLeastRangeM);
+  const auto [lo, hi] = tint_range_m(z, window);
   constexpr Color kUnknown{0.55, 0.55, 0.58}, kForbidden{0.80, 0.12, 0.10};
   std::vector<std::uint32_t> pixels;
   pixels.reserve(static_cast<std::size_t>(window.i1 - window.i0) *
@@ -74,7 +79,7 @@ std::vector<std::uint32_t> ground_pixels(const TerrainMap& terrain, const MapWin
         pixels.push_back(pixel(kUnknown));
         continue;
       }
-      Color c = height_tint(z.at(i, j), middle - half, middle + half);
+      Color c = height_tint(z.at(i, j), lo, hi);
       if (terrain.traversable().at(i, j) < 0.5f) c = mix(c, kForbidden, 0.45);
       const double light = hillshade(z, i, j);
       pixels.push_back(pixel({c.red * light, c.green * light, c.blue * light}));

@@ -21,6 +21,11 @@ struct MapWindow {
 [[nodiscard]] std::pair<double, double> height_range_m(const Grid& elevation,
                                                        const MapWindow& window);
 
+/// What the tints span: the window's heights, but at least half a metre, so that nearly flat ground
+/// does not look like mountains.
+[[nodiscard]] std::pair<double, double> tint_range_m(const Grid& elevation,
+                                                     const MapWindow& window);
+
 /// Hillshade with height tint, 0xRRGGBB, one pixel per cell, rows from the north; untraversable
 /// cells reddened, unknown ones grey.
 [[nodiscard]] std::vector<std::uint32_t> ground_pixels(const TerrainMap& terrain,

@@ -12,7 +12,7 @@ namespace {
 using Points = std::vector<Eigen::Vector2d>;
 
 constexpr Color kBlack{0.0, 0.0, 0.0}, kWhite{1.0, 1.0, 1.0}, kGrey{0.35, 0.35, 0.35};
-constexpr Color kPlanned{0.10, 0.35, 0.85}, kRefined{0.95, 0.95, 0.95}, kDriven{0.85, 0.05, 0.45};
+constexpr Color kPlanned{0.35, 0.65, 1.0}, kRefined{0.0, 0.0, 0.0}, kDriven{0.85, 0.05, 0.45};
 constexpr Color kStart{0.05, 0.50, 0.15}, kGoal{0.80, 0.35, 0.00};
 constexpr double kText = 13.0;
 
@@ -144,14 +144,14 @@ class Overview {
       }
     }
     if (report_.plan) {
-      canvas_.line(px(base_path(report_.plan->nodes)), {kWhite, 6.0});
-      canvas_.line(px(base_path(report_.plan->nodes)), {kPlanned, 4.0});
-    }
-    if (report_.refined) {
-      canvas_.line(px(base_path(report_.refined->nodes)), {kRefined, 1.5, 5.0});
+      canvas_.line(px(base_path(report_.plan->nodes)), {kWhite, 9.5});
+      canvas_.line(px(base_path(report_.plan->nodes)), {kPlanned, 7.5});
     }
     if (report_.drive) {
-      canvas_.line(px(driven_path(report_.drive->samples)), {kDriven, 2.0});
+      canvas_.line(px(driven_path(report_.drive->samples)), {kDriven, 3.0});
+    }
+    if (report_.refined) {
+      canvas_.line(px(base_path(report_.refined->nodes)), {kRefined, 1.2, 4.0});
     }
   }
 
@@ -192,7 +192,11 @@ class Overview {
     };
     shape(1.2, kWhite);
     shape(0.0, color);
-    halo_text(tail + Eigen::Vector2d(0.0, pose.yaw_rad < 0.0 ? -14.0 : 24.0), label, color);
+    // Beside the chassis, opposite to where the arrow points.
+    const double aside_px = scale_px_m_ * machine_.belly_max_m.norm() + 12.0;
+    halo_text(
+        tail + Eigen::Vector2d(0.0, std::sin(pose.yaw_rad) < 0.0 ? -aside_px : aside_px + 8.0),
+        label, color);
   }
 
   void halo_text(const Eigen::Vector2d& at, const std::string& text, const Color& color) {
@@ -248,17 +252,14 @@ class Overview {
       canvas_.text({x + 42.0, y + 4.5}, text, kText);
       y += 24.0;
     };
-    const auto stroke = [&](const Stroke& s, const Stroke* below = nullptr) {
-      return [this, x, s, below](double at) {
-        if (below) canvas_.line({{x, at}, {x + 32.0, at}}, *below);
-        canvas_.line({{x, at}, {x + 32.0, at}}, s);
-      };
+    const auto stroke = [&](const Stroke& s) {
+      return [this, x, s](double at) { canvas_.line({{x, at}, {x + 32.0, at}}, s); };
     };
-    const Stroke planned{kPlanned, 4.0};
+    const Stroke planned{kPlanned, 7.5};
     if (report_.plan) entry("planned path", stroke(planned));
-    if (report_.refined) entry("refined path", stroke({kRefined, 1.5, 5.0}, &planned));
+    if (report_.refined) entry("refined path", stroke({kRefined, 1.2, 4.0}));
     if (report_.drive) {
-      entry("driven path", stroke({kDriven, 2.0}));
+      entry("driven path", stroke({kDriven, 3.0}));
       entry("wheel tracks", stroke({{0.15, 0.15, 0.15, 0.65}, 1.3}));
     }
     const auto patch = [&](const Color& c) {
@@ -276,7 +277,7 @@ class Overview {
   }
 
   void draw_height_scale(const Box& bar) {
-    const auto [lo, hi] = height_range_m(terrain_.elevation(), window_);
+    const auto [lo, hi] = tint_range_m(terrain_.elevation(), window_);
     canvas_.text({bar.x, bar.y - 12.0}, "height (m)", kText);
     constexpr int kSteps = 50;
     for (int k = 0; k < kSteps; ++k) {

@@ -9,7 +9,8 @@
 namespace wex::app {
 namespace {
 
-constexpr Color kBlack{0.0, 0.0, 0.0}, kGrid{0.88, 0.88, 0.88}, kLimit{0.75, 0.15, 0.10};
+constexpr Color kBlack{0.0, 0.0, 0.0}, kGrid{0.88, 0.88, 0.88}, kLimit{0.75, 0.15, 0.10},
+    kHold{0.94, 0.94, 0.97};
 constexpr Color kBlue{0.10, 0.35, 0.80}, kOrange{0.90, 0.45, 0.00}, kGreen{0.10, 0.50, 0.25};
 constexpr double kText = 13.0;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
@@ -24,7 +25,7 @@ struct Curve {
 
 struct Limit {
   double value = 0.0;
-  std::string name;
+  std::string name;  ///< empty: the line speaks for itself
 };
 
 struct Panel {
@@ -37,8 +38,9 @@ struct Panel {
 /// Panels stacked over one time axis.
 class Timeline {
  public:
-  Timeline(double end_s, int num_panels)
-      : end_s_(end_s),
+  Timeline(double hold_from_s, double end_s, int num_panels)
+      : hold_from_s_(hold_from_s),
+        end_s_(end_s),
         canvas_(
             static_cast<int>(kWidth),
             static_cast<int>(kTop + kContactsHeight + num_panels * (kPanelHeight + kGap) + 70.0)),
@@ -70,6 +72,9 @@ class Timeline {
     canvas_.outline({kLeft, top, kPlotWidth, kPitch * kNumWheels}, {kBlack, 1.0});
     vertical_title("contact", top, kPitch * kNumWheels);
     canvas_.text({kLegend, top + 14.0}, "bar: wheel carries load", kText);
+    canvas_.fill({kLegend, top + 24.0, 24.0, 14.0}, kHold);
+    canvas_.outline({kLegend, top + 24.0, 24.0, 14.0}, {kGrid, 1.0});
+    canvas_.text({kLegend + 32.0, top + 36.0}, "stopped, holding", kText);
     y_ = top + kContactsHeight + kGap;
   }
 
@@ -97,7 +102,9 @@ class Timeline {
     for (const Curve& curve : panel.curves) {
       legend(legend_y, curve.name, {curve.color, 2.5});
     }
-    for (const Limit& limit : panel.limits) legend(legend_y, limit.name, {kLimit, 1.3, 6.0});
+    for (const Limit& limit : panel.limits) {
+      if (!limit.name.empty()) legend(legend_y, limit.name, {kLimit, 1.3, 6.0});
+    }
     canvas_.outline(box, {kBlack, 1.0});
     vertical_title(panel.title, box.y, box.height);
     y_ += kPanelHeight + kGap;
@@ -124,6 +131,7 @@ class Timeline {
   double x(double t_s) const { return kLeft + kPlotWidth * t_s / end_s_; }
 
   void time_grid(const Box& box) {
+    canvas_.fill({x(hold_from_s_), box.y, x(end_s_) - x(hold_from_s_), box.height}, kHold);
     for (const double value : ticks(0.0, end_s_, 10)) {
       canvas_.line({{x(value), box.y}, {x(value), box.y + box.height}}, {kGrid, 1.0});
     }
@@ -169,7 +177,7 @@ class Timeline {
     return {lo < panel.least_lo || lo < 0.0 ? lo - border : lo, hi + border};
   }
 
-  double end_s_;
+  double hold_from_s_, end_s_;
   Canvas canvas_;
   double y_;
 };
@@ -193,7 +201,7 @@ Result<void> draw_timeline(const RunReport& report, const std::filesystem::path&
       {curve("roll", kBlue, samples, [](const auto& s) { return kDegrees * s.base[kBaseRoll]; }),
        curve("pitch", kOrange, samples,
              [](const auto& s) { return kDegrees * s.base[kBasePitch]; })},
-      {{20.0, "planning limit, 20"}, {-20.0, "planning limit, -20"}},
+      {{20.0, "planning limit, 20"}, {-20.0, ""}},
       -22.0,
       22.0};
   const Panel margin{
@@ -223,14 +231,14 @@ Result<void> draw_timeline(const RunReport& report, const std::filesystem::path&
   for (const SolveSample& s : report.drive->solves) {
     if (!s.usable) unusable.points.emplace_back(s.t_s, 1e3 * s.cpu_time_s);
   }
-  const Panel solving{
-      "solve time (ms)", {solve_times, unusable}, {{100.0, "period, 100"}}, 0.0, 120.0};
+  Panel solving{"solve time (ms)", {solve_times}, {{100.0, "period, 100"}}, 0.0, 120.0};
+  if (!unusable.points.empty()) solving.curves.push_back(unusable);
 
-  Timeline timeline(samples.back().t_s, 4);
+  Timeline timeline(report.drive->duration_s, samples.back().t_s, 4);
   timeline.title(report.options.map.filename().string() + ", seed " +
                  std::to_string(report.options.seed) + ": the drive over time");
   timeline.contacts(samples);
-  for (const Panel* panel : {&tilt, &margin, &tracking, &solving}) timeline.panel(*panel);
+  for (const Panel& panel : {tilt, margin, tracking, solving}) timeline.panel(panel);
   timeline.time_axis();
   return timeline.write(file);
 }
