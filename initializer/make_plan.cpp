@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "initializer/internal/direct_paths.hpp"
 #include "initializer/internal/se2_search.hpp"
 #include "initializer/pose_check.hpp"
 #include "initializer/shorten_path.hpp"
@@ -110,12 +111,14 @@ class Planning {
     const PoseValidity valid = [this](const Pose2& pose, double curvature_1_m) {
       return is_valid(pose, curvature_1_m);
     };
-    const DrivePath direct =
-        reeds_shepp_path(task_.start, task_.goal, machine_.min_turning_radius_m);
-    lower_bound_m_ = path_length_m(direct);
-    if (path_is_valid(direct, settings_.subnode_spacing_m, valid)) {
-      consider(direct);
-      if (best_) return finished();
+    lower_bound_m_ =
+        path_length_m(reeds_shepp_path(task_.start, task_.goal, search_settings_.turning_radius_m));
+    const std::vector<DrivePath> direct = direct_paths(
+        task_.start, task_.goal, search_settings_.turning_radius_m, search_settings_.cost);
+    for (const DrivePath& path : direct) {
+      if (!path_is_valid(path, settings_.subnode_spacing_m, valid)) continue;
+      consider(path);
+      if (best_ && &path == &direct.front()) return finished();  // nothing is cheaper
     }
     while (!out_of_budget(0)) {
       Se2Search tree(task_.start, task_.goal, search_settings_, valid,

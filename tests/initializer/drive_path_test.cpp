@@ -2,9 +2,11 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "initializer/internal/direct_paths.hpp"
 #include "initializer/internal/se2_search.hpp"
 
 namespace wex {
@@ -39,6 +41,39 @@ TEST(DrivePath, ReedsSheppPathsEndAtTheirGoal) {
                   1e-9);
     }
     expect_near(pose_along(path.back(), path.back().length_m), goal, 1e-6);
+  }
+}
+
+TEST(DrivePath, DirectPathsAllReachTheGoalAndTheCheapestComesFirst) {
+  const PathCostWeights weights;
+  for (const Pose2& goal : {Pose2{15.0, 1.0, 0.1}, Pose2{-12.0, 3.0, 0.2}, Pose2{2.0, 6.0, 3.0}}) {
+    const Pose2 start{0.3, -0.2, -7.0};
+    const auto paths = direct_paths(start, goal, kRadiusM, weights);
+    ASSERT_EQ(paths.size(), 3U);
+    int num_forward = 0, num_reverse = 0;
+    for (std::size_t k = 0; k < paths.size(); ++k) {
+      const DrivePath& path = paths[k];
+      expect_near(path.front().start, start, 1e-6);
+      EXPECT_NEAR(path.front().start.yaw_rad, start.yaw_rad, 1e-9);
+      for (std::size_t i = 1; i < path.size(); ++i) {
+        const Pose2 end = pose_along(path[i - 1], path[i - 1].length_m);
+        expect_near(end, path[i].start, 1e-9);
+        EXPECT_NEAR(end.yaw_rad, path[i].start.yaw_rad, 1e-9);
+      }
+      expect_near(pose_along(path.back(), path.back().length_m), goal, 1e-6);
+      if (k > 0) {
+        EXPECT_GE(path_cost_m(path, weights), path_cost_m(paths[k - 1], weights));
+      }
+      const auto all = [&](double gear) {
+        return std::all_of(path.begin(), path.end(), [&](const PathSegment& segment) {
+          return gear * segment.length_m >= -1e-9;
+        });
+      };
+      num_forward += all(1.0);
+      num_reverse += all(-1.0);
+    }
+    EXPECT_GE(num_forward, 1);
+    EXPECT_GE(num_reverse, 1);
   }
 }
 
