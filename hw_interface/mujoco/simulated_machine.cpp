@@ -139,6 +139,7 @@ struct SimulatedMachine::Impl {
       mj_step(model.get(), data.get());
       recorder.observe(model.get(), data.get(), settings.timestep_s);
     }
+    recorder.end_period(settings.control_period_s);
     fault = data->warning[mjWARN_BADQPOS].number + data->warning[mjWARN_BADQVEL].number +
                 data->warning[mjWARN_BADQACC].number >
             0;

@@ -43,8 +43,14 @@ void TruthRecorder::reset() noexcept {
   body_contact_ = false;
 }
 
-void TruthRecorder::add_contacts(const mjModel* model, const mjData* data) noexcept {
-  patches_.fill(Patch{});
+void TruthRecorder::Patch::add(const Patch& other) noexcept {
+  load_n += other.load_n;
+  penetration_m = std::max(penetration_m, other.penetration_m);
+  for (int i = 0; i < 3; ++i) moment[i] += other.moment[i];
+}
+
+TruthRecorder::Patches TruthRecorder::contacts(const mjModel* model, const mjData* data) noexcept {
+  Patches patches;
   for (int c = 0; c < data->ncon; ++c) {
     const mjContact& contact = data->contact[c];
     const int first = contact.geom[0], second = contact.geom[1];
@@ -61,26 +67,25 @@ void TruthRecorder::add_contacts(const mjModel* model, const mjData* data) noexc
     double vertical_n = 0.0;  // frame rows are the contact's axes, the first from first to second
     for (int axis = 0; axis < 3; ++axis) vertical_n += force[axis] * contact.frame[3 * axis + 2];
     if (!second_is_machine) vertical_n = -vertical_n;
-    Patch& patch = patches_[leg];
-    patch.load_n += vertical_n;
-    patch.penetration_m = std::max(patch.penetration_m, -contact.dist);
-    for (int i = 0; i < 3; ++i) patch.moment[i] += vertical_n * contact.pos[i];
+    Patch point{.load_n = vertical_n, .penetration_m = -contact.dist, .moment = {}};
+    for (int i = 0; i < 3; ++i) point.moment[i] = vertical_n * contact.pos[i];
+    patches[leg].add(point);
   }
+  return patches;
 }
 
 void TruthRecorder::observe(const mjModel* model, const mjData* data, double dt_s) noexcept {
-  add_contacts(model, data);
+  const Patches patches = contacts(model, data);
+  ++steps_in_period_;
   for (int leg = 0; leg < kNumWheels; ++leg) {
     const Wheel& wheel = wheels_[leg];
     travel_m_[leg] += std::abs(data->qvel[wheel.wheel_dof]) * wheel.radius_m * dt_s;
-    if (patches_[leg].load_n < kLoaded_n) {
-      airborne_s_[leg] += dt_s;
-      continue;
-    }
+    period_sum_[leg].add(patches[leg]);
+    if (patches[leg].load_n < kLoaded_n) continue;
     // Velocity of the tyre's material in the patch, along the axle (site y).
     mjtNum velocity[6];
     mj_objectVelocity(model, data, mjOBJ_XBODY, wheel.body, velocity, 0);
-    const std::array<double, 3> patch = patches_[leg].centre();
+    const std::array<double, 3> patch = patches[leg].centre();
     const mjtNum* centre = data->xpos + 3 * wheel.body;
     const mjtNum arm[3] = {patch[0] - centre[0], patch[1] - centre[1], patch[2] - centre[2]};
     mjtNum at_patch[3];
@@ -90,6 +95,18 @@ void TruthRecorder::observe(const mjModel* model, const mjData* data, double dt_
     const double along_axle = at_patch[0] * R[1] + at_patch[1] * R[4] + at_patch[2] * R[7];
     side_slip_m_[leg] += std::abs(along_axle) * dt_s;
   }
+}
+
+void TruthRecorder::end_period(double period_s) noexcept {
+  if (steps_in_period_ == 0) return;
+  patches_ = period_sum_;
+  for (int leg = 0; leg < kNumWheels; ++leg) {
+    patches_[leg].load_n /= steps_in_period_;
+    for (double& moment : patches_[leg].moment) moment /= steps_in_period_;
+    if (patches_[leg].load_n < kLoaded_n) airborne_s_[leg] += period_s;
+  }
+  period_sum_.fill(Patch{});
+  steps_in_period_ = 0;
 }
 
 GroundTruth TruthRecorder::truth(const mjData* data) const {

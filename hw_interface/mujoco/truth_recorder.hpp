@@ -9,7 +9,9 @@
 
 namespace wex {
 
-/// Collects the GroundTruth of a simulation, step by step. Allocation-free after construction.
+/// Collects the GroundTruth of a simulation, step by step. Loads are means over a control period:
+/// a rigid wheel on a rigid height field loses its contact for single steps, which says nothing of
+/// the machine. Allocation-free after construction.
 class TruthRecorder {
  public:
   TruthRecorder(const MachineModel& machine, const mjModel* model);
@@ -18,17 +20,17 @@ class TruthRecorder {
   void reset() noexcept;
   /// After each mj_step of dt_s: contacts and velocities of that step.
   void observe(const mjModel* model, const mjData* data, double dt_s) noexcept;
+  /// After the last step of a control period.
+  void end_period(double period_s) noexcept;
   /// base: filled in by the owner, who keeps yaw unwrapped.
   [[nodiscard]] GroundTruth truth(const mjData* data) const;
 
  private:
-  void add_contacts(const mjModel* model, const mjData* data) noexcept;
-
   struct Wheel {
     int body = -1, site = -1, tyre_qpos = -1, wheel_dof = -1;
     double radius_m = 0.0;
   };
-  /// Contact forces of one wheel in one step.
+  /// Contact of one wheel.
   struct Patch {
     double load_n = 0.0;
     double penetration_m = 0.0;
@@ -36,11 +38,17 @@ class TruthRecorder {
     [[nodiscard]] std::array<double, 3> centre() const {
       return {moment[0] / load_n, moment[1] / load_n, moment[2] / load_n};
     }
+    void add(const Patch& other) noexcept;
   };
+  using Patches = std::array<Patch, kNumWheels>;
+
+  [[nodiscard]] Patches contacts(const mjModel* model, const mjData* data) noexcept;
 
   std::array<Wheel, kNumWheels> wheels_{};
   std::vector<int> wheel_of_geom_;  ///< -1: none
-  std::array<Patch, kNumWheels> patches_{};
+  Patches patches_{};               ///< means over the last whole period, penetration its largest
+  Patches period_sum_{};            ///< of the period under way
+  int steps_in_period_ = 0;
   std::array<double, kNumWheels> side_slip_m_{}, travel_m_{}, airborne_s_{};
   bool body_contact_ = false;
 };
