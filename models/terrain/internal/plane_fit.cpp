@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -70,33 +71,110 @@ RowPrefixes prefix_sums(const Grid& elevation, double x_middle, double z_mean, i
   return prefix;
 }
 
+/// The disc as rows: half width of each row, by its distance from the centre, in cells.
+struct Disc {
+  std::vector<int> half_widths;
+  double count = 0.0;   ///< cells of the whole disc
+  double square = 0.0;  ///< sum of dx^2 over them, and of dy^2
+
+  [[nodiscard]] int reach() const { return static_cast<int>(half_widths.size()) - 1; }
+};
+
+Disc make_disc(double radius_cells, int largest_reach) {
+  Disc disc;
+  for (int dy = 0; dy <= std::min(radius_cells, static_cast<double>(largest_reach)); ++dy) {
+    const int half_width = static_cast<int>(std::min(
+        std::sqrt(radius_cells * radius_cells - dy * dy), static_cast<double>(largest_reach)));
+    disc.half_widths.push_back(half_width);
+    const double rows = dy == 0 ? 1.0 : 2.0;
+    const double width = 2.0 * half_width + 1.0;
+    disc.count += rows * width;
+    disc.square += rows * width * dy * dy;
+  }
+  return disc;
+}
+
+/// How many cells of a rectangle are known, from a table of sums over all rectangles at the origin.
+class KnownCount {
+ public:
+  explicit KnownCount(const Grid& grid) : size_x_(grid.size_x), size_y_(grid.size_y) {
+    const std::size_t stride = static_cast<std::size_t>(size_x_) + 1;
+    table_.assign(stride * (size_y_ + 1), 0);
+    for (int j = 0; j < size_y_; ++j) {
+      std::int32_t row = 0;
+      for (int i = 0; i < size_x_; ++i) {
+        row += std::isnan(grid.at(i, j)) ? 0 : 1;
+        table_[stride * (j + 1) + i + 1] = table_[stride * j + i + 1] + row;
+      }
+    }
+  }
+  /// True if the whole rectangle, ends included, is on the map and known.
+  [[nodiscard]] bool all_known(int i0, int j0, int i1, int j1) const {
+    if (i0 < 0 || j0 < 0 || i1 >= size_x_ || j1 >= size_y_) return false;
+    return at(i1 + 1, j1 + 1) - at(i0, j1 + 1) - at(i1 + 1, j0) + at(i0, j0) ==
+           (i1 - i0 + 1) * (j1 - j0 + 1);
+  }
+
+ private:
+  [[nodiscard]] std::int32_t at(int i, int j) const {
+    return table_[static_cast<std::size_t>(size_x_ + 1) * j + i];
+  }
+  int size_x_, size_y_;
+  std::vector<std::int32_t> table_;
+};
+
+/// Sums of one row of each of kLanes discs side by side.
+Lanes row_sum(const RowPrefixes& prefix, RowMoment moment, int row, int first, int half_width) {
+  return Eigen::Map<const Lanes>(prefix.at(moment, row, first + half_width + 1)) -
+         Eigen::Map<const Lanes>(prefix.at(moment, row, first - half_width));
+}
+
 /// Sums of the discs around cells (first, j) .. (first + kLanes - 1, j).
-///   half_widths  of the disc's rows, by the distance of the row from the centre
-DiscSums sum_discs(const RowPrefixes& prefix, const std::vector<int>& half_widths, int size_y,
-                   int first, int j) {
+DiscSums sum_discs(const RowPrefixes& prefix, const Disc& disc, int size_y, int first, int j) {
   Lanes n = Lanes::Zero(), x = n, y = n, xx = n, xy = n, yy = n, z = n, xz = n, yz = n;
-  const int reach = static_cast<int>(half_widths.size()) - 1;
-  for (int row = std::max(0, j - reach); row <= std::min(size_y - 1, j + reach); ++row) {
+  const int last_row = std::min(size_y - 1, j + disc.reach());
+  for (int row = std::max(0, j - disc.reach()); row <= last_row; ++row) {
     const double dy = row - j;
-    const int half_width = half_widths[std::abs(row - j)];
-    const auto row_sum = [&](RowMoment moment) -> Lanes {
-      return Eigen::Map<const Lanes>(prefix.at(moment, row, first + half_width + 1)) -
-             Eigen::Map<const Lanes>(prefix.at(moment, row, first - half_width));
-    };
-    const Lanes row_n = row_sum(kN);
-    const Lanes row_x = row_sum(kX);
-    const Lanes row_z = row_sum(kZ);
+    const int half_width = disc.half_widths[std::abs(row - j)];
+    const Lanes row_n = row_sum(prefix, kN, row, first, half_width);
+    const Lanes row_x = row_sum(prefix, kX, row, first, half_width);
+    const Lanes row_z = row_sum(prefix, kZ, row, first, half_width);
     n += row_n;
     x += row_x;
     y += dy * row_n;
-    xx += row_sum(kXX);
+    xx += row_sum(prefix, kXX, row, first, half_width);
     xy += dy * row_x;
     yy += dy * dy * row_n;
     z += row_z;
-    xz += row_sum(kXZ);
+    xz += row_sum(prefix, kXZ, row, first, half_width);
     yz += dy * row_z;
   }
   return {n, x, y, xx, xy, yy, z, xz, yz};
+}
+
+/// The same where every cell is known: what does not depend on the heights is known beforehand.
+///   x_first  x of the first centre, as in the row moments
+DiscSums sum_known_discs(const RowPrefixes& prefix, const Disc& disc, double x_first, int first,
+                         int j) {
+  Lanes z = Lanes::Zero(), xz = z, yz = z;
+  for (int dy = -disc.reach(); dy <= disc.reach(); ++dy) {
+    const int half_width = disc.half_widths[std::abs(dy)];
+    const Lanes row_z = row_sum(prefix, kZ, j + dy, first, half_width);
+    z += row_z;
+    xz += row_sum(prefix, kXZ, j + dy, first, half_width);
+    yz += static_cast<double>(dy) * row_z;
+  }
+  const Lanes x_centre = Lanes::LinSpaced(kLanes, x_first, x_first + kLanes - 1);
+  const Lanes none = Lanes::Zero();
+  return {none + disc.count,
+          disc.count * x_centre,
+          none,
+          disc.count * x_centre.square() + disc.square,
+          none,
+          none + disc.square,
+          z,
+          xz,
+          yz};
 }
 
 struct Plane {
@@ -160,23 +238,23 @@ PlaneFit fit_planes(const Grid& elevation, double radius_m) {
   const double radius_cells =
       std::max(radius_m / elevation.cell_m, kSmallestRadiusCells) + kRoundOff;
   // Rows and columns beyond the map add nothing, however large the radius.
-  const double largest = std::max(size_x, size_y);
-  std::vector<int> half_widths;
-  for (int dy = 0; dy <= std::min(radius_cells, largest); ++dy) {
-    half_widths.push_back(
-        static_cast<int>(std::min(std::sqrt(radius_cells * radius_cells - dy * dy), largest)));
-  }
+  const Disc disc = make_disc(radius_cells, std::max(size_x, size_y));
+  const int reach = disc.reach();
 
   const double x_middle = 0.5 * (size_x - 1);
   const double z_mean = known_mean(elevation);
-  const RowPrefixes prefix = prefix_sums(elevation, x_middle, z_mean, half_widths.front() + kLanes);
+  const RowPrefixes prefix = prefix_sums(elevation, x_middle, z_mean, reach + kLanes);
+  const KnownCount known(elevation);
 
   PlaneFit fit;
   fit.height = elevation;
   fit.gradient.assign(elevation.values.size(), Eigen::Vector2f::Zero());
   for (int j = 0; j < size_y; ++j) {
     for (int first = 0; first < size_x; first += kLanes) {
-      const DiscSums sums = sum_discs(prefix, half_widths, size_y, first, j);
+      const bool all_known =
+          known.all_known(first - reach, j - reach, first + kLanes - 1 + reach, j + reach);
+      const DiscSums sums = all_known ? sum_known_discs(prefix, disc, first - x_middle, first, j)
+                                      : sum_discs(prefix, disc, size_y, first, j);
       for (int i = first; i < std::min(first + kLanes, size_x); ++i) {
         float& height = fit.height.at(i, j);
         if (std::isnan(height)) continue;
