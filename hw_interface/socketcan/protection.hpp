@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace wex::can {
+
+/// CRC-16 0x1021 (init 0xFFFF) over payload, data id and session: FD frames. Check value of
+/// "123456789" without id and session: 0x29B1.
+[[nodiscard]] std::uint16_t crc16(std::span<const std::uint8_t> bytes,
+                                  std::uint16_t start = 0xFFFF) noexcept;
+/// CRC-8 0x2F (init 0xFF, xorout 0xFF), classic frames. Check value of "123456789": 0xDF.
+[[nodiscard]] std::uint8_t crc8(std::span<const std::uint8_t> bytes) noexcept;
+
+enum class SequenceVerdict : std::uint8_t { kFirst, kOk, kRepeated, kLostSome, kWrongSequence };
+
+/// Receiver's side of the counter: delta 0 is a repetition (discarded, does not refresh age),
+/// 1..max_delta is good, more is a wrong sequence that needs good_to_recover good frames in a row.
+class SequenceCheck {
+ public:
+  struct Settings {
+    int modulus = 256;
+    int max_delta = 3;
+    int good_to_recover = 3;
+  };
+  explicit SequenceCheck(const Settings& settings) noexcept : settings_(settings) {}
+  SequenceVerdict update(std::uint8_t counter) noexcept;
+  /// True when the last verdicts allow the content to be used.
+  [[nodiscard]] bool trusted() const noexcept { return good_needed_ == 0 && seen_; }
+  [[nodiscard]] long lost_frames() const noexcept { return lost_; }
+  void reset() noexcept;
+
+ private:
+  Settings settings_;
+  bool seen_ = false;
+  std::uint8_t last_ = 0;
+  int good_needed_ = 0;
+  long lost_ = 0;
+};
+
+}  // namespace wex::can
