@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <bitset>
+#include <cstdint>
 
 #include "models/types/limbs.hpp"
 #include "models/types/pose.hpp"
@@ -11,6 +12,14 @@ namespace wex {
 
 /// Upper bound of actuated joints, so that control-rate values live on the stack.
 inline constexpr int kMaxJoints = 32;
+
+/// What a joint's reading is worth.
+enum class SignalQuality : std::uint8_t {
+  kOk,
+  kStale,        ///< older than the planner may take for the present; the last value is kept
+  kInvalid,      ///< the sensor reports a fault
+  kNotAvailable  ///< never heard of
+};
 
 /// What is sent to the machine at control rate. Plain value, no allocation. Joint order as in
 /// MachineModel::joints; entries beyond num_joints are ignored.
@@ -29,9 +38,11 @@ struct MachineState {
   BaseCoordinates base{};                       ///< in the local world frame; yaw unwrapped
   Eigen::Matrix<double, 6, 1> base_velocity{};  ///< linear, angular; world frame, m/s and rad/s
   int num_joints = 0;
-  std::array<double, kMaxJoints> position{};  ///< rad or m; wheels unwrapped
-  std::array<double, kMaxJoints> rate{};      ///< rad/s or m/s
-  std::array<double, kMaxJoints> effort{};    ///< N m or N, from cylinder pressures
+  std::array<double, kMaxJoints> position{};     ///< rad or m; wheels unwrapped
+  std::array<double, kMaxJoints> rate{};         ///< rad/s or m/s
+  std::array<double, kMaxJoints> effort{};       ///< N m or N, from cylinder pressures
+  std::array<double, kMaxJoints> joint_age_s{};  ///< of each position and rate when read
+  std::array<SignalQuality, kMaxJoints> joint_quality{};
 };
 
 }  // namespace wex
