@@ -119,25 +119,49 @@ void JointLoop::update_stall(const JointCommand* command,
   }
 }
 
+void JointLoop::update_ramps(const std::array<double, kNumWheels>& asked,
+                             bool end_motion) noexcept {
+  // The wheels together speed up gently; what one does against another is geometry (curves,
+  // steering about an offset kingpin) and follows at once, or the wheels would work against each
+  // other.
+  std::array<double, kNumWheels> ramp{};
+  double asked_mean = 0.0, mean = 0.0;
+  for (int leg = 0; leg < kNumWheels; ++leg) {
+    ramp[leg] = wheel_sign_[leg] * previous_rate_[wheel_joint_[leg]];
+    asked_mean += wheel_sign_[leg] * asked[leg] / kNumWheels;
+    mean += ramp[leg] / kNumWheels;
+  }
+  for (int leg = 0; leg < kNumWheels; ++leg) {
+    const JointData& data = joints_[wheel_joint_[leg]];
+    const double gentle = data.max_acceleration * settings_.period_s;
+    const double quick = gentle * settings_.wheel_stop_acceleration_factor;
+    const double apart =
+        slewed(ramp[leg] - mean, wheel_sign_[leg] * asked[leg] - asked_mean, quick);
+    const double together = slewed(mean, asked_mean, end_motion ? quick : gentle);
+    const double rate = wheel_sign_[leg] * (together + apart);
+    previous_rate_[wheel_joint_[leg]] = std::clamp(rate, -data.max_rate, data.max_rate);
+    expected_rate_[leg] +=
+        data.response_blend * (previous_rate_[wheel_joint_[leg]] - expected_rate_[leg]);
+  }
+}
+
 void JointLoop::update_wheels(const JointCommand* command, const JointMeasurement& measured,
                               ActuatorCommand& out) noexcept {
   update_stall(command, measured);
+  const bool end_motion = command == nullptr || stalled();
+  std::array<double, kNumWheels> asked{};
+  for (int leg = 0; leg < kNumWheels && !end_motion; ++leg) {
+    const double max_rate = joints_[wheel_joint_[leg]].max_rate;
+    asked[leg] = std::clamp(command->rate[wheel_joint_[leg]], -max_rate, max_rate);
+  }
+  update_ramps(asked, end_motion);
   double droop_rad_s = 0.0, latch_error_rad = 0.0;
   int driven = 0;
   bool were_all_latched = true;
   for (int leg = 0; leg < kNumWheels; ++leg) {
     const int joint = wheel_joint_[leg];
-    const JointData& data = joints_[joint];
-    const bool end_motion = command == nullptr || stalled();
-    const double asked =
-        end_motion ? 0.0 : std::clamp(command->rate[joint], -data.max_rate, data.max_rate);
-    const double acceleration =
-        data.max_acceleration * (end_motion ? settings_.wheel_stop_acceleration_factor : 1.0);
-    const double ramp = slewed(previous_rate_[joint], asked, acceleration * settings_.period_s);
-    previous_rate_[joint] = ramp;
-    expected_rate_[leg] += data.response_blend * (ramp - expected_rate_[leg]);
-    const bool rest =
-        std::abs(asked) < kWheelRestRate_rad_s && std::abs(ramp) < kWheelRestRate_rad_s;
+    const bool rest = std::abs(asked[leg]) < kWheelRestRate_rad_s &&
+                      std::abs(previous_rate_[joint]) < kWheelRestRate_rad_s;
     were_all_latched = were_all_latched && latched_[leg];
     if (latched_[leg]) {
       latch_error_rad += wheel_sign_[leg] * (latched_angle_rad_[leg] - measured.position[joint]);
@@ -173,7 +197,7 @@ void JointLoop::update_wheels(const JointCommand* command, const JointMeasuremen
 
 ActuatorCommand JointLoop::update(const JointCommand* command,
                                   const JointMeasurement& measured) noexcept {
-  balance_.update(measured.effort, settings_.load_balance && command != nullptr);
+  balance_.update(measured.position, measured.effort, settings_.load_balance && command != nullptr);
   ActuatorCommand out;
   for (int i = 0; i < num_joints_; ++i) {
     if (!joints_[i].wheel) out.rate[i] = hydraulic_rate(i, command, measured.position[i]);

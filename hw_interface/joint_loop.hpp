@@ -14,7 +14,7 @@ struct JointLoopSettings {
   double gain_delay_product = 0.6;   ///< gain <= this / (dead time + lag): phase margin 40 degrees
   double dead_band = 0.05;           ///< of full spool travel, undone by its inverse
   double rest_rate_fraction = 2e-3;  ///< slower than this share of the rate limit is "closed"
-  double wheel_stop_acceleration_factor = 3.0;  ///< of the joint's own, when motion must end
+  double wheel_stop_acceleration_factor = 3.0;  ///< of the joint's own: to end motion, and apart
   double wheel_hold_gain_1_s = 2.0;             ///< brake latch and drive droop
   double max_drive_lag_rad = 0.03;              ///< bound of the droop correction, at the wheel
   double stall_time_s = 0.5;
@@ -71,6 +71,7 @@ class JointLoop {
   double hydraulic_rate(int joint, const JointCommand* command, double position) const noexcept;
   void share_pump(ActuatorCommand& out) const noexcept;
   void update_stall(const JointCommand* command, const JointMeasurement& measured) noexcept;
+  void update_ramps(const std::array<double, kNumWheels>& asked, bool end_motion) noexcept;
   void update_wheels(const JointCommand* command, const JointMeasurement& measured,
                      ActuatorCommand& out) noexcept;
 

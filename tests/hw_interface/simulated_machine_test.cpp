@@ -167,6 +167,30 @@ TEST(SimulatedMachine, FallsIntoUnknownGround) {
   EXPECT_GT(io->ground_truth().base[kBasePitch], 5.0 * kDeg) << "nose down";
 }
 
+TEST(SimulatedMachine, EvensOutItsWheelLoadsOnTwistedGround) {
+  const TerrainMap terrain = ground_of([](double x, double y) { return 0.007 * x * y; });
+  std::array<double, 2> warp{};
+  for (const bool balance : {false, true}) {
+    SimulationSettings settings;
+    settings.load_balance = balance;
+    const auto io =
+        SimulatedMachine::create(m545(), terrain, standing_on_plane(m545()), settings).value();
+    const MachineState before = io->read();
+    drive(*io, 0.0, 20.0);
+    const auto& load_n = io->ground_truth().wheel_load_n;
+    warp[balance] =
+        std::abs(load_n[0] - load_n[1] - load_n[2] + load_n[3]) / total_load_n(io->ground_truth());
+    const MachineState after = io->read();
+    for (int i = 0; i < after.num_joints; ++i) {
+      EXPECT_NEAR(after.position[i], before.position[i], 0.01)
+          << m545().joints[i].name << ": the caller does not see the balance";
+    }
+    EXPECT_EQ(io->load_balance_offset_rad()[0] != 0.0, balance);
+  }
+  EXPECT_GT(warp[0], 0.3);
+  EXPECT_LT(warp[1], 0.06);
+}
+
 TEST(SimulatedMachine, TellsTheJointsOfTheModelFileInItsOrder) {
   const Eigen::VectorXd q = standing_on_plane(m545());
   const auto io = machine_on(flat_ground(), q);
