@@ -38,11 +38,13 @@ function(judge file header)
   only("^tests/" "^tests/")
 
   if(header MATCHES "^(.+)/internal/")
-    only("^(tests/)?${CMAKE_MATCH_1}/" "/internal/")
+    # A benchmark measures the parts that a module keeps to itself.
+    only("^((tests/)?${CMAKE_MATCH_1}|tools/bench)/" "/internal/")
   endif()
   # MuJoCo's types may show between its two users; the second judgement below keeps them from others.
   if(file IN_LIST public_headers AND header MATCHES "[/.]"
-     AND NOT header MATCHES "^(models|initializer|mpc|hw_interface|tools|Eigen|tl|mujoco)/")
+     AND NOT header MATCHES "^(models|initializer|mpc|hw_interface|tools|Eigen|tl|mujoco)/"
+     AND NOT file MATCHES "^tests/")
     set(reason "other modules include this header, so it shows only std, Eigen, tl::expected, wex"
       PARENT_SCOPE)
   endif()
@@ -84,6 +86,7 @@ expect(allowed tools/wex/a.cpp mpc/a.hpp)
 expect(forbidden hw_interface/a.cpp tools/a.hpp)
 expect(forbidden hw_interface/a.cpp tests/support/a.hpp)
 expect(forbidden tools/wex/a.cpp initializer/internal/a.hpp)
+expect(allowed tools/bench/a.cpp initializer/internal/a.hpp)
 
 set(complaints "")
 set(folders models initializer mpc hw_interface tools tests .ci)
