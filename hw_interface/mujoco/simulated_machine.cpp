@@ -22,6 +22,7 @@ namespace wex {
 namespace {
 
 constexpr double kTimeTolerance_s = 1e-9;
+constexpr double kLimitTolerance = 1e-6;  ///< rad/s, rad (m/s, m): rounding of a planner
 constexpr double kRadToDeg = 180.0 / std::numbers::pi;
 
 JointLoopSettings joint_loop_settings(const MachineModel& machine,
@@ -145,6 +146,23 @@ struct SimulatedMachine::Impl {
             0;
   }
 
+  /// Brings the command into the joints' limits; true if it was not.
+  bool clamp_command() noexcept {
+    bool clamped = false;
+    const auto bring_into = [&clamped](double& value, double lower, double upper) {
+      const double within = std::clamp(value, lower, upper);
+      clamped = clamped || std::abs(within - value) > kLimitTolerance;
+      value = within;
+    };
+    for (int i = 0; i < machine.num_joints(); ++i) {
+      const Joint& joint = machine.joints[i];
+      bring_into(command.rate[i], -joint.max_rate, joint.max_rate);
+      if (!command.has_position_target[i]) continue;
+      bring_into(command.position_target[i], joint.lower, joint.upper);
+    }
+    return clamped;
+  }
+
   BaseCoordinates base() const noexcept {
     Eigen::Isometry3d T_world_base = Eigen::Isometry3d::Identity();
     const mjtNum* pose = data->qpos;
@@ -245,10 +263,10 @@ WriteOutcome SimulatedMachine::write(const JointCommand& command) noexcept {
     if (command.valid_until_s < impl_->data->time) return WriteOutcome::kRejectedExpired;
     impl_->command = command;
     impl_->has_command = true;
-    return WriteOutcome::kAccepted;
+    return impl_->clamp_command() ? WriteOutcome::kClamped : WriteOutcome::kAccepted;
   }();
-  (outcome == WriteOutcome::kAccepted ? impl_->health.commands_accepted
-                                      : impl_->health.commands_rejected)++;
+  ++(taken(outcome) ? impl_->health.commands_accepted : impl_->health.commands_rejected);
+  if (outcome == WriteOutcome::kClamped) ++impl_->health.commands_clamped;
   return outcome;
 }
 

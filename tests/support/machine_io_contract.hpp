@@ -100,8 +100,9 @@ TEST_P(MachineIoContract, AJointGoesWhereItsTargetIsAndIsReadBackThere) {
 TEST_P(MachineIoContract, RatesStayWithinTheJointsLimit) {
   const Joint& limits = machine().joints[hip()];
   JointCommand command = command_for(3.0);
-  command.rate[hip()] = -20.0 * limits.max_rate;
-  ASSERT_EQ(io_->write(command), WriteOutcome::kAccepted);
+  command.rate[hip()] = -1.5 * limits.max_rate;
+  ASSERT_EQ(io_->write(command), WriteOutcome::kClamped);
+  EXPECT_EQ(io_->health().commands_clamped, 1);
   const double start_s = io_->read().t_s;
   double fastest_rad_s = 0.0;
   while (io_->read().t_s < start_s + 1.0) {
