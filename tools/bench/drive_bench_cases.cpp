@@ -16,13 +16,15 @@ struct SyntheticCase {
   const char* name;
   const char* kind;
   double difficulty;
+  bool half_circle = false;  ///< at the minimum radius, instead of the terrain's own task
 };
 
-constexpr SyntheticCase kSyntheticCases[] = {{"flat", "flat", 0.0},
-                                             {"rough_0", "rough", 0.0},
-                                             {"rough_0.15", "rough", 0.15},
-                                             {"ramp", "ramp", 0.0},
-                                             {"side_slope", "side_slope", 0.0}};
+/// Asked for by name only: it measures side slip, the others count successes.
+constexpr SyntheticCase kCurveCase{"flat_curve", "flat", 0.0, true};
+
+constexpr SyntheticCase kSyntheticCases[] = {
+    {"flat", "flat", 0.0}, {"rough_0", "rough", 0.0},         {"rough_0.15", "rough", 0.15},
+    {"ramp", "ramp", 0.0}, {"side_slope", "side_slope", 0.0}, kCurveCase};
 
 std::vector<std::filesystem::path> real_maps(const DriveBenchOptions& options) {
   if (!options.real_maps.empty()) return options.real_maps;
@@ -71,6 +73,16 @@ class TaskDraw {
   int rejected_ = 0;
 };
 
+/// A half circle at the machine's minimum radius over the middle of a 30 x 16 m map; the seed
+/// varies place and heading a little, so that the way there differs.
+Task half_circle_task(double radius_m, int seed) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+  std::uniform_real_distribution<double> place_m(-0.5, 0.5), yaw_rad(-0.05, 0.05);
+  const double x = 13.0 + place_m(random);
+  return {{x, 8.0 - radius_m, yaw_rad(random)},
+          {x + place_m(random), 8.0 + radius_m, std::numbers::pi + yaw_rad(random)}};
+}
+
 std::filesystem::path run_folder(const DriveBenchOptions& options, const std::string& name,
                                  int seed) {
   return options.out / name / ("seed_" + std::to_string(seed));
@@ -84,7 +96,9 @@ Result<void> add_synthetic(const SyntheticCase& c, const DriveBenchOptions& opti
     if (!terrain) return tl::unexpected(terrain.error());
     const auto map = options.out / c.name / ("map_" + std::to_string(seed) + ".asc");
     if (auto written = write_esri_ascii(terrain->raster, map); !written) return written;
-    runs.push_back({c.name, seed, map, terrain->task, 0, run_folder(options, c.name, seed)});
+    const Task task =
+        c.half_circle ? half_circle_task(MachineModel().min_turning_radius_m, seed) : terrain->task;
+    runs.push_back({c.name, seed, map, task, 0, run_folder(options, c.name, seed)});
   }
   return {};
 }
@@ -128,7 +142,10 @@ std::vector<std::string> drive_bench_case_names(const DriveBenchOptions& options
 Result<std::vector<DriveBenchRun>> prepare_drive_bench(const DriveBenchOptions& options) {
   const std::vector<std::string> known = drive_bench_case_names(options);
   std::vector<std::string> asked = options.cases;
-  if (asked.empty()) asked = options.quick ? std::vector<std::string>{"flat", "rough_0"} : known;
+  if (asked.empty()) {
+    asked = options.quick ? std::vector<std::string>{"flat", "rough_0"} : known;
+    std::erase(asked, kCurveCase.name);
+  }
   for (const std::string& name : asked) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     std::string list;

@@ -51,7 +51,7 @@ std::string row(const std::string& name, const std::vector<const DriveBenchResul
     worst.margin_m = std::min(worst.margin_m, r->margin_m);
     worst.real_time_factor = std::min(worst.real_time_factor, r->real_time_factor);
   }
-  const std::string count = format("%-12s %3d/%-3zu", name.c_str(), successes, runs.size());
+  const std::string count = format("%-14s %3d/%-2zu", name.c_str(), successes, runs.size());
   if (p50.empty()) return count + "  (none came to a drive)\n";
   std::sort(p50.begin(), p50.end());
   return count + format(
@@ -123,9 +123,10 @@ std::string drive_bench_table(const std::vector<DriveBenchRun>& runs,
   WEX_EXPECTS(runs.size() == results.size() && !runs.empty());
   std::string table =
       "worst over the runs of a case; solve times: median of the runs' p50, worst p99, worst\n"
-      "case           ok/n    goal   yaw   slip margin  roll pitch  sink   hold   lift    solve ms"
+      "case              ok/n    goal   yaw   slip margin  roll pitch  sink   hold   lift    solve "
+      "ms"
       "           misses/  un-   real\n"
-      "                          m   deg      %      m   deg   deg    mm   cm/s      s   p50  p99"
+      "                            m   deg      %      m   deg   deg    mm   cm/s      s   p50  p99"
       "   max  solves     usable time\n";
   std::vector<std::string> names;
   for (const DriveBenchRun& run : runs) {

@@ -235,10 +235,32 @@ int bench_command(const CLI::App& command, const DriveBenchOptions& drive, std::
   return code ? *code : refuse(err, code.error());
 }
 
-/// The deepest command named, for its help text.
-const CLI::App& named(const CLI::App& app) {
+/// Help of the deepest command named.
+std::string help_text(const CLI::App& app, const std::string& path = "") {
   const std::vector<CLI::App*> commands = app.get_subcommands();
-  return commands.empty() ? app : named(*commands.front());
+  if (commands.empty()) return app.help(path);
+  return help_text(*commands.front(), path.empty() ? app.get_name() : path + " " + app.get_name());
+}
+
+/// CLI11 only says that a command is missing; the word that is none helps more.
+std::optional<std::string> unknown_command(const CLI::App& app, int argc, const char* const* argv) {
+  const CLI::App* level = &app;
+  for (int i = 1; i < argc && level->get_require_subcommand_min() > 0; ++i) {
+    const std::string word = argv[i];
+    if (word.starts_with("-")) return std::nullopt;
+    std::string names;
+    const CLI::App* next = nullptr;
+    for (const CLI::App* known : level->get_subcommands([](const CLI::App*) { return true; })) {
+      if (known->get_name() == word) next = known;
+      names += names.empty() ? known->get_name() : ", " + known->get_name();
+    }
+    if (next) {
+      level = next;
+      continue;
+    }
+    return "there is no command '" + word + "', only " + names;
+  }
+  return std::nullopt;
 }
 
 /// What went wrong with the arguments, on one line.
@@ -269,10 +291,13 @@ int run_cli(int argc, const char* const* argv, std::ostream& out, std::ostream& 
   add_terrain(app, options.terrain);
   add_model(app, options.model);
   add_bench(app, options.drive_bench);
+  if (const auto problem = unknown_command(app, argc, argv)) {
+    return refuse(err, {ErrorCode::kBadInput, *problem + " (see wex --help)"});
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    out << named(app).help();
+    out << help_text(app);
     return 0;
   } catch (const CLI::CallForVersion& version) {
     out << version.what() << "\n";

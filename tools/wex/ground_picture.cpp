@@ -100,7 +100,7 @@ std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> contour_pieces(const Gr
       for (int k = 0; k < 4; ++k) z[k] = elevation.at(corner[k].x(), corner[k].y());
       const auto [lo, hi] = std::minmax_element(z.begin(), z.end());
       if (!std::isfinite(*lo + *hi) || !std::isfinite(z[0] + z[1] + z[2] + z[3])) continue;
-      for (double level = std::ceil(*lo / step_m) * step_m; level < *hi; level += step_m) {
+      for (double level = std::ceil(*lo / step_m) * step_m; level <= *hi; level += step_m) {
         std::vector<Eigen::Vector2d> crossings;
         for (int k = 0; k < 4; ++k) {
           const double a = z[k], b = z[(k + 1) % 4];
