@@ -32,7 +32,11 @@ std::unique_ptr<SimulatedMachine> machine_on(const TerrainMap& terrain, const Ei
 int wheel_joint(int leg) { return m545().legs[leg].wheel - kNumBaseCoordinates; }
 
 /// Everything held where it was read, wheels at one speed.
-JointCommand driving(const MachineState& hold, double speed_m_s) {
+/// Speed of each wheel's centre per speed of the base; 1 when driving straight.
+using SpeedRatios = std::array<double, kNumWheels>;
+constexpr SpeedRatios kStraight{1.0, 1.0, 1.0, 1.0};
+
+JointCommand driving(const MachineState& hold, double speed_m_s, const SpeedRatios& ratios) {
   JointCommand command;
   command.num_joints = m545().num_joints();
   command.position_target = hold.position;
@@ -41,13 +45,14 @@ JointCommand driving(const MachineState& hold, double speed_m_s) {
   }
   for (int leg = 0; leg < kNumWheels; ++leg) {
     command.rate[wheel_joint(leg)] =
-        m545().legs[leg].wheel_sign * speed_m_s / m545().legs[leg].radius_m;
+        m545().legs[leg].wheel_sign * ratios[leg] * speed_m_s / m545().legs[leg].radius_m;
   }
   return command;
 }
 
-void drive(SimulatedMachine& io, double speed_m_s, double duration_s) {
-  JointCommand command = driving(io.read(), speed_m_s);
+void drive(SimulatedMachine& io, double speed_m_s, double duration_s,
+           const SpeedRatios& ratios = kStraight) {
+  JointCommand command = driving(io.read(), speed_m_s, ratios);
   const double end_s = io.read().t_s + duration_s;
   for (double t_s = io.read().t_s; t_s < end_s - 1e-6; t_s = io.read().t_s) {
     command.valid_until_s = t_s + 0.2;
@@ -71,6 +76,7 @@ TEST(SimulatedMachine, StandsStillOnFlatGroundAtItsStaticSag) {
     fastest_m_s = std::max(fastest_m_s, std::abs(io->ground_truth().base_vertical_rate_m_s));
   }
   const GroundTruth end = io->ground_truth();
+  RecordProperty("fastest_um_s", std::to_string(1e6 * fastest_m_s));
   EXPECT_LT(fastest_m_s, 1e-3);
   EXPECT_NEAR(end.base[kBaseZ], start.base[kBaseZ], 1e-3);
   for (int leg = 0; leg < kNumWheels; ++leg) {
@@ -94,6 +100,8 @@ TEST(SimulatedMachine, DoesNotCreepParkedOnSlopes) {
     const Eigen::Vector3d before = io->ground_truth().base.head<3>();
     io->wait_until(12.0);
     const double creep_m_s = (io->ground_truth().base.head<3>() - before).norm() / 10.0;
+    RecordProperty("creep_um_s_" + std::to_string(static_cast<int>(slope.along_deg)),
+                   std::to_string(1e6 * creep_m_s));
     EXPECT_LT(creep_m_s, 1e-3) << slope.along_deg << " / " << slope.across_deg << " degrees";
     EXPECT_GT(total_load_n(io->ground_truth()), 0.95 * m545().total_mass_kg * kGravity_m_s2);
   }
@@ -109,6 +117,47 @@ TEST(SimulatedMachine, DrivesStraightWithoutSideSlip) {
   for (int leg = 0; leg < kNumWheels; ++leg) {
     EXPECT_NEAR(truth.wheel_travel_m[leg], truth.base[kBaseX] + 3.0, 0.03);
     EXPECT_LT(truth.side_slip_m[leg], 0.02 * truth.wheel_travel_m[leg]);
+  }
+}
+
+/// Turns each wheel's axle onto the centre of a circle to the left of the base; q must stand level
+/// at the origin.
+SpeedRatios steer_onto_circle(double radius_m, Eigen::VectorXd& q) {
+  const Eigen::Vector2d centre(0.0, radius_m);
+  KinematicTree::Workspace workspace = m545().tree.make_workspace();
+  SpeedRatios ratios{};
+  for (int round = 0; round < 20; ++round) {  // the wheel moves as it is steered
+    m545().tree.update(q, workspace);
+    for (int leg = 0; leg < kNumWheels; ++leg) {
+      const WheeledLeg& l = m545().legs[leg];
+      const Eigen::Vector2d to_centre =
+          centre - m545().tree.position(workspace, l.carrier_body, l.p_carrier_wheel).head<2>();
+      const Eigen::Vector2d axle =
+          m545().tree.direction(workspace, l.carrier_body, l.axle_carrier).head<2>();
+      q[l.steer] +=
+          std::atan2(axle.x() * to_centre.y() - axle.y() * to_centre.x(), axle.dot(to_centre));
+      ratios[leg] = to_centre.norm() / radius_m;
+    }
+  }
+  return ratios;
+}
+
+TEST(SimulatedMachine, DrivesItsTightestCurveWithLittleSideSlip) {
+  const double radius_m = m545().min_turning_radius_m;
+  Eigen::VectorXd q = standing_on_plane(m545());
+  const SpeedRatios ratios = steer_onto_circle(radius_m, q);
+  const auto io = machine_on(flat_ground(), q);
+  const BaseCoordinates start = io->ground_truth().base;
+  drive(*io, 0.5, 12.0, ratios);
+  const GroundTruth truth = io->ground_truth();
+  const double turned_rad = truth.base[kBaseYaw] - start[kBaseYaw];
+  EXPECT_GT(turned_rad, 1.0);
+  const double chord_m = (truth.base - start).head<2>().norm();
+  EXPECT_NEAR(chord_m, 2.0 * radius_m * std::sin(turned_rad / 2.0), 0.10);
+  for (int leg = 0; leg < kNumWheels; ++leg) {
+    EXPECT_LT(truth.side_slip_m[leg], 0.02 * truth.wheel_travel_m[leg]);
+    RecordProperty("side_slip_" + std::to_string(leg),
+                   std::to_string(truth.side_slip_m[leg] / truth.wheel_travel_m[leg]));
   }
 }
 
