@@ -7,10 +7,11 @@
 
 namespace wex {
 
-/// Wheel centre one radius above the tyre-dilated ground, plus the estimated bias:
-///   p_z - h_dilated(p_x, p_y) - r - bias = 0   [m], one row per wheel.
-/// Source: the paper's height constraint p_z = h(p_x, p_y); differs: on the dilated map, so that
-/// the disc touches where it touches.
+/// Every wheel rests on the ground, off by the estimated bias:
+///   p_z - z_rest(p_x, p_y, axle) - bias = 0   [m], one row per wheel,
+/// with z_rest of models/terrain/wheel_rest.hpp: the disc touches where it touches.
+/// Source: the paper's height constraint p_z = h(p_x, p_y), which has the touching point straight
+/// below the centre.
 class WheelHeight final : public NodeConstraint {
  public:
   WheelHeight(const TerrainMap& terrain, const MachineModel& machine, const NlpLayout& layout,
@@ -25,7 +26,7 @@ class WheelHeight final : public NodeConstraint {
  private:
   const TerrainMap* terrain_;
   BlockPattern pattern_;
-  std::array<double, kNumWheels> radius_plus_bias_m_;
+  std::array<double, kNumWheels> radius_m_, half_width_m_, height_bias_m_;
 };
 
 }  // namespace wex

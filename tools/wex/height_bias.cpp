@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "models/terrain/wheel_rest.hpp"
+
 namespace wex::app {
 
 HeightBias::HeightBias(const TerrainMap& terrain, const MachineModel& machine,
@@ -20,8 +22,11 @@ void HeightBias::update(double t_s, const Eigen::VectorXd& q) {
     const WheeledLeg& leg = machine_->legs[i];
     const Eigen::Vector3d p_world_centre =
         machine_->tree.position(workspace_, leg.carrier_body, leg.p_carrier_wheel);
+    const Eigen::Vector3d axle_world =
+        machine_->tree.direction(workspace_, leg.carrier_body, leg.axle_carrier);
     const double model_height_m =
-        terrain_->dilated_surface(p_world_centre.head<2>()).value + leg.radius_m;
+        wheel_rest(*terrain_, p_world_centre.head<2>(), axle_world, leg.radius_m, leg.half_width_m)
+            .height_m;
     bias_m_[i] += gain * (p_world_centre.z() - model_height_m - bias_m_[i]);
   }
 }
