@@ -7,7 +7,8 @@ namespace wex::can {
 
 inline constexpr int kMaxPayloadBytes = 64;
 
-/// One frame as it stands on the bus, classic or FD. Plain value.
+/// One frame as it stands on the bus, classic or FD. Plain value. FD frames are sent with bit rate
+/// switch (the load table of wex.dbc counts on it).
 struct CanFrame {
   std::uint32_t id = 0;  ///< 11 or 29 bits, without flags
   bool extended = false, remote = false, error = false, fd = false;

@@ -9,6 +9,9 @@
 
 namespace wex::can {
 
+// The protocol is wex.dbc; generated/ holds its bit layout and its table of ranges. Everything here
+// but describe() is noexcept and allocation-free, and safe to call concurrently.
+
 /// Why bytes or values were refused. Nothing is ever wrapped, clamped or truncated here.
 enum class CodecError : std::uint8_t {
   kNotFinite,      ///< NaN or infinity in a value to send
@@ -35,12 +38,18 @@ struct ReceivedMeta {
 [[nodiscard]] std::uint32_t dbc_hash() noexcept;
 
 /// Values -> frame: finite, physical range, rounding to nearest, raw range, CRC and counter.
-///   noexcept, no allocation; on error `frame` and the counter are untouched
-#define WEX_CAN_MESSAGE(Type)                                                              \
-  [[nodiscard]] Result<void, CodecError> encode(const Type& message, SendContext& context, \
-                                                CanFrame& frame) noexcept;                 \
-  /* Frame -> values: format, length, CRC (with `session`), tables, ranges. */             \
-  [[nodiscard]] Result<ReceivedMeta, CodecError> decode(                                   \
+///   on error `frame` and the counter are untouched; the session counts only for ZoneCommand
+///   ZoneFeedback, BasePose: values of quality kInvalid or kNotAvailable are not looked at and go
+///   out as "not available"
+///   ZoneCommand: joints that the zone does not have must be inactive with rate 0
+///   a zone that does not exist: kUnknownId
+#define WEX_CAN_MESSAGE(Type)                                                               \
+  [[nodiscard]] Result<void, CodecError> encode(const Type& message, SendContext& context,  \
+                                                CanFrame& frame) noexcept;                  \
+  /* Frame -> values: id, format, length, CRC (with `session`), tables, ranges. On error */ \
+  /* `message` is untouched. What its sender has no value for is NaN; joints that the    */ \
+  /* zone does not have are 0 and kNotAvailable.                                         */ \
+  [[nodiscard]] Result<ReceivedMeta, CodecError> decode(                                    \
       const CanFrame& frame, std::uint32_t session, Type& message) noexcept
 
 WEX_CAN_MESSAGE(ZoneCommand);   // session-bound
@@ -75,19 +84,34 @@ enum class MessageKind : std::uint8_t {
 [[nodiscard]] MessageKind kind_of(const CanFrame& frame) noexcept;
 [[nodiscard]] int zone_of(const CanFrame& frame) noexcept;  ///< -1 if it has none
 
+[[nodiscard]] const char* name_of(const CanFrame& frame) noexcept;  ///< "unknown" if it has none
+
+/// Of the DBC: how often a message is sent, and after which silence its receiver reacts (0: never).
+struct MessageTiming {
+  double period_s = 0.0, timeout_s = 0.0;
+};
+[[nodiscard]] MessageTiming timing_of(MessageKind kind) noexcept;
+
 /// Where a joint of the machine stands on the bus; from the DBC's JointName attributes.
 struct JointSlot {
   int zone = -1, index = -1;
 };
+/// Slot {-1, -1} if no zone has a joint of this name.
 [[nodiscard]] JointSlot slot_of(const std::string& joint_name) noexcept;
 /// Limits of a slot as the DBC's attributes state them (both sides check against these).
 struct SlotLimits {
   double lower = 0.0, upper = 0.0;  ///< +-infinity for continuous joints
   double max_rate = 0.0, max_acceleration = 0.0;
 };
+/// All zero for a slot that no joint has.
 [[nodiscard]] SlotLimits limits_of(JointSlot slot) noexcept;
 
-/// One line for a person: name, values with units, counter, verdict. Not real-time code.
-[[nodiscard]] std::string describe(const CanFrame& frame);
+/// Words for reports.
+[[nodiscard]] const char* to_string(CodecError error) noexcept;
+[[nodiscard]] const char* to_string(MachineMode mode) noexcept;
+
+/// One line for a person: name, counter, verdict, values with units. A ZoneCommand's CRC needs the
+/// session. Not real-time code.
+[[nodiscard]] std::string describe(const CanFrame& frame, std::uint32_t session = 0);
 
 }  // namespace wex::can

@@ -6,7 +6,9 @@
 
 #include "models/types/limbs.hpp"
 
-// What the frames of wex.dbc mean, in SI units. Plain values; codec.hpp turns them into bytes.
+// What the frames of wex.dbc mean, in SI units. Plain values; codec.hpp turns them into bytes and
+// refuses values outside the DBC's ranges, e.g. rates beyond a joint's limit, positions more than
+// 0.25 beyond its end stops, angles of the base or of a continuous joint outside +-pi.
 
 namespace wex::can {
 
@@ -41,7 +43,7 @@ struct ZoneCommand {  // 0x080 + zone, 100 Hz, host
 
 struct ZoneFeedback {  // 0x100 + zone, 100 Hz, machine
   int zone = 0;
-  std::array<double, kMaxZoneJoints> position{};  ///< rad or m; wheels and TURN wrap at +-pi
+  std::array<double, kMaxZoneJoints> position{};  ///< rad or m; continuous joints wrap
   std::array<double, kMaxZoneJoints> rate{};
   std::array<double, kMaxZoneJoints> spool{};  ///< -1..1
   std::array<JointQuality, kMaxZoneJoints> quality{};
@@ -50,7 +52,7 @@ struct ZoneFeedback {  // 0x100 + zone, 100 Hz, machine
 
 struct ZonePressure {  // 0x300 + zone, 50 Hz, machine
   int zone = 0;
-  std::array<double, kMaxZoneJoints> pressure_a_pa{}, pressure_b_pa{};
+  std::array<double, kMaxZoneJoints> pressure_a_pa{}, pressure_b_pa{};  ///< -0.1e6..60e6
 };
 
 struct ZoneStatus {  // 0x200 + zone, 20 Hz and on change, machine
@@ -94,7 +96,7 @@ struct Imu {                                                         // 0x180, 1
 
 struct BasePose {                                          // 0x188, 100 Hz, localisation unit
   Eigen::Vector3d p_map_base_m = Eigen::Vector3d::Zero();  ///< in the map file's own frame
-  double yaw_rad = 0.0, pitch_rad = 0.0, roll_rad = 0.0;
+  double yaw_rad = 0.0, pitch_rad = 0.0, roll_rad = 0.0;   ///< within +-pi
   Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();  ///< world frame
   JointQuality quality = JointQuality::kNotAvailable;
   std::uint32_t sample_time_ms = 0;

@@ -15,7 +15,8 @@ namespace wex::can {
 enum class SequenceVerdict : std::uint8_t { kFirst, kOk, kRepeated, kLostSome, kWrongSequence };
 
 /// Receiver's side of the counter: delta 0 is a repetition (discarded, does not refresh age),
-/// 1..max_delta is good, more is a wrong sequence that needs good_to_recover good frames in a row.
+/// 1..max_delta is good, more is a wrong sequence that needs good_to_recover good frames in a row;
+/// the last of them is trusted. Feed it frames with a good CRC only.
 class SequenceCheck {
  public:
   struct Settings {
@@ -25,15 +26,21 @@ class SequenceCheck {
   };
   explicit SequenceCheck(const Settings& settings) noexcept : settings_(settings) {}
   SequenceVerdict update(std::uint8_t counter) noexcept;
-  /// True when the last verdicts allow the content to be used.
-  [[nodiscard]] bool trusted() const noexcept { return good_needed_ == 0 && seen_; }
+  /// True when the content of the frame just checked may be used.
+  [[nodiscard]] bool trusted() const noexcept {
+    return seen_ && good_needed_ == 0 && last_verdict_ != SequenceVerdict::kRepeated;
+  }
   [[nodiscard]] long lost_frames() const noexcept { return lost_; }
+  /// As new, for a new session or after a time-out; the count of lost frames goes on.
   void reset() noexcept;
 
  private:
+  SequenceVerdict judge(std::uint8_t counter) noexcept;
+
   Settings settings_;
   bool seen_ = false;
   std::uint8_t last_ = 0;
+  SequenceVerdict last_verdict_ = SequenceVerdict::kFirst;
   int good_needed_ = 0;
   long lost_ = 0;
 };
