@@ -21,9 +21,9 @@ struct PlantState {
 struct PlantInput {
   std::array<double, kMaxJoints> spool{};       ///< valve opening in [-1, 1]; unused for wheels
   std::array<double, kMaxJoints> wheel_rate{};  ///< drives and their brakes, rad/s; wheels only
-  /// False: pilot supply off, every valve's spring closes it and the load-holding valves shut. The
-  /// machine stands on its legs: no input ever opens a load-holding valve without a spool.
-  bool pilot_supply = false;
+  /// False: the load-holding valves shut whatever the spools do (springs, within 50 ms): no flow.
+  /// The machine stands on its legs, so nothing here ever lets pressure out of one.
+  bool motion_released = false;
 };
 
 /// The hydraulics and mechanics behind the electronics: simulated, or a test's.
