@@ -188,6 +188,10 @@ TEST_F(BadInput, NoStartAndGoal) {
   expect_option_refused("--start=7.5,8,0", {"no goal", "--goal X,Y,YAW"});
 }
 
+TEST_F(BadInput, GoalThatIsTheStart) {
+  expect_option_refused("--goal=7.5,8,6.2832", {"start and goal are the same"});
+}
+
 TEST_F(BadInput, TaskFileThatIsNoTask) {
   write("ground.json", R"({"start": [7.5, 8]})");
   expect_map_refused("ground.asc", {"ground.json"});

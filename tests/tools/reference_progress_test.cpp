@@ -8,6 +8,7 @@ namespace wex::app {
 namespace {
 
 constexpr double kDt = 0.1;
+constexpr ReferenceProgressSettings kAtOnce{.head_start_s = 0.0};
 
 /// 0.5 m/s along x for 10 s, then back for 10 s.
 std::vector<WholeBodyNode> there_and_back() {
@@ -29,14 +30,14 @@ BaseCoordinates base_at(double x) {
 }
 
 TEST(ReferenceProgress, RunsWithRealTimeWhileTheMachineKeepsUp) {
-  ReferenceProgress progress(there_and_back());
+  ReferenceProgress progress(there_and_back(), kAtOnce);
   for (int k = 0; k < 50; ++k) progress.advance(kDt, base_at(0.5 * kDt * k - 0.1));
   EXPECT_NEAR(progress.time_s(), 5.0, 1e-9);
   EXPECT_NEAR(progress.fraction(), 0.25, 1e-9);
 }
 
 TEST(ReferenceProgress, DoesNotRunAwayFromAMachineThatStands) {
-  ReferenceProgress progress(there_and_back());
+  ReferenceProgress progress(there_and_back(), kAtOnce);
   for (int k = 0; k < 600; ++k) progress.advance(kDt, base_at(0.0));
   // At 0.5 m/s the full-stop lag of 0.45 m is reached after 0.9 s.
   EXPECT_LT(progress.time_s(), 0.91);
@@ -45,7 +46,7 @@ TEST(ReferenceProgress, DoesNotRunAwayFromAMachineThatStands) {
 }
 
 TEST(ReferenceProgress, GoesOnWhenTheMachineCatchesUp) {
-  ReferenceProgress progress(there_and_back());
+  ReferenceProgress progress(there_and_back(), kAtOnce);
   for (int k = 0; k < 100; ++k) progress.advance(kDt, base_at(0.0));
   const double waited_s = progress.time_s();
   progress.advance(kDt, base_at(0.5 * waited_s));
@@ -53,7 +54,7 @@ TEST(ReferenceProgress, GoesOnWhenTheMachineCatchesUp) {
 }
 
 TEST(ReferenceProgress, NeverGoesBackwardsAndEndsAtTheEnd) {
-  ReferenceProgress progress(there_and_back());
+  ReferenceProgress progress(there_and_back(), kAtOnce);
   double last_s = progress.time_s();
   for (int k = 0; k < 400; ++k) {
     const double reference_x = 0.5 * std::min(last_s, 20.0 - last_s);
@@ -67,7 +68,7 @@ TEST(ReferenceProgress, NeverGoesBackwardsAndEndsAtTheEnd) {
 }
 
 TEST(ReferenceProgress, MeasuresTheLagAlongTheDirectionOfTravel) {
-  ReferenceProgress progress(there_and_back());
+  ReferenceProgress progress(there_and_back(), kAtOnce);
   for (int k = 0; k < 150; ++k) {
     const double t = progress.time_s();
     progress.advance(kDt, base_at(0.5 * std::min(t, 20.0 - t)));
@@ -79,10 +80,19 @@ TEST(ReferenceProgress, MeasuresTheLagAlongTheDirectionOfTravel) {
 }
 
 TEST(ReferenceProgress, ALateralErrorIsNoLag) {
-  ReferenceProgress progress(there_and_back());
+  ReferenceProgress progress(there_and_back(), kAtOnce);
   BaseCoordinates base = base_at(0.0);
   base[kBaseY] = 2.0;
   EXPECT_NEAR(progress.lag_m(base), 0.0, 1e-9);
+}
+
+TEST(ReferenceProgress, GivesTheMachineAHeadStartBeforeTheReferenceMoves) {
+  ReferenceProgress progress(there_and_back(), {.head_start_s = 0.3});
+  EXPECT_DOUBLE_EQ(progress.time_s(), -0.3);
+  EXPECT_DOUBLE_EQ(progress.fraction(), 0.0);
+  EXPECT_NEAR(progress.error_m(base_at(0.0)), 0.0, 1e-12);
+  for (int k = 0; k < 3; ++k) progress.advance(kDt, base_at(0.0));
+  EXPECT_NEAR(progress.time_s(), 0.0, 1e-12);
 }
 
 TEST(ReferenceProgress, RefusesAnEmptyTrajectory) {

@@ -81,7 +81,7 @@ class Overview {
   }
 
  private:
-  static constexpr double kLeft = 74.0, kTop = 44.0, kRight = 250.0, kBottom = 58.0;
+  static constexpr double kLeft = 96.0, kTop = 44.0, kRight = 250.0, kBottom = 58.0;
   static constexpr double kLegendHeight = 420.0;
 
   Pose2 local(const Pose2& pose) const { return local_pose(pose, report_.map_origin_m); }
@@ -240,7 +240,7 @@ class Overview {
     });
     canvas_.text({box_.x + 0.5 * box_.width, bottom + 42.0}, "x, map frame (m)", kText,
                  Align::kCentre);
-    canvas_.text({18.0, box_.y + 0.5 * box_.height}, "y, map frame (m)", kText, Align::kCentre,
+    canvas_.text({20.0, box_.y + 0.5 * box_.height}, "y, map frame (m)", kText, Align::kCentre,
                  kBlack, 0.5 * std::numbers::pi);
   }
 

@@ -10,7 +10,7 @@ ReferenceProgress::ReferenceProgress(std::vector<WholeBodyNode> nodes,
                                      const ReferenceProgressSettings& settings)
     : nodes_(std::move(nodes)), settings_(settings) {
   WEX_EXPECTS(!nodes_.empty());
-  time_s_ = nodes_.front().t_s;
+  time_s_ = nodes_.front().t_s - settings_.head_start_s;
 }
 
 double ReferenceProgress::lag_m(const BaseCoordinates& base) const {
@@ -40,7 +40,7 @@ void ReferenceProgress::advance(double dt_s, const BaseCoordinates& base) {
 
 double ReferenceProgress::fraction() const noexcept {
   const double duration_s = nodes_.back().t_s - nodes_.front().t_s;
-  return duration_s > 0.0 ? (time_s_ - nodes_.front().t_s) / duration_s : 1.0;
+  return duration_s > 0.0 ? std::max(0.0, time_s_ - nodes_.front().t_s) / duration_s : 1.0;
 }
 
 }  // namespace wex::app

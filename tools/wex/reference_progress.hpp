@@ -10,6 +10,7 @@ struct ReferenceProgressSettings {
   double free_lag_m = 0.15;   ///< the reference does not wait for a lag below this
   double full_stop_m = 0.45;  ///< and stands still from this lag on
   double tangent_window_s = 0.5;
+  double head_start_s = 0.3;  ///< before the reference moves: first solve, dead time and lag
 };
 
 /// Which time on the refined trajectory belongs to now. Runs with real time, never backwards, and
@@ -23,6 +24,7 @@ class ReferenceProgress {
 
   /// Advances by dt_s >= 0 (contract) given the measured base.
   void advance(double dt_s, const BaseCoordinates& base);
+  /// Begins head_start_s before the first node.
   [[nodiscard]] double time_s() const noexcept { return time_s_; }
   [[nodiscard]] bool finished() const noexcept { return time_s_ >= nodes_.back().t_s; }
   /// Share of the trajectory's duration that is behind, 0 to 1.

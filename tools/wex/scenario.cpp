@@ -74,6 +74,15 @@ Result<Scenario> load_scenario(const RunOptions& options) {
       return tl::unexpected(on_map.error());
     }
   }
+  constexpr double kSamePlaceM = 0.01, kSameYawRad = 0.01;
+  const Pose2& a = task_map->start;
+  const Pose2& b = task_map->goal;
+  if (std::hypot(a.x_m - b.x_m, a.y_m - b.y_m) < kSamePlaceM &&
+      std::abs(wrap_angle(a.yaw_rad - b.yaw_rad)) < kSameYawRad) {
+    return fail(
+        ErrorCode::kBadInput,
+        "start and goal are the same pose (to 1 cm and 0.01 rad): there is nothing to drive");
+  }
   Result<MachineModel> machine = load_machine(options.machine);
   if (!machine) return tl::unexpected(machine.error());
   const Task task{local_from_map(task_map->start, *terrain),

@@ -20,7 +20,7 @@ struct Scenario {
 
 /// Reads map, machine and task.
 ///   errors  kBadInput from the loaders; no start or goal (says how to give them); a pose that is
-///           not finite or lies off the map
+///           not finite or lies off the map; start and goal the same
 [[nodiscard]] Result<Scenario> load_scenario(const RunOptions& options);
 
 }  // namespace wex::app
