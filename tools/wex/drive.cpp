@@ -173,13 +173,13 @@ class Loop {
         return;
       }
     }
-    if (elapsed_s() > settings_.max_duration_factor * planned_duration_s_) {
+    const double allowed_s = std::max(settings_.max_duration_factor * planned_duration_s_,
+                                      settings_.least_max_duration_s);
+    if (elapsed_s() > allowed_s) {
       end(ErrorCode::kStoppedSafely,
-          format(
-              "stopped safely: time ran out after %.0f s (%.0f x the planned %.1f s), %.2f m and "
-              "%.1f degrees from the goal",
-              elapsed_s(), settings_.max_duration_factor, planned_duration_s_, distance_m,
-              yaw_rad / kDegree));
+          format("stopped safely: time ran out after %.0f s (planned: %.1f s), %.2f m and %.1f "
+                 "degrees from the goal",
+                 elapsed_s(), planned_duration_s_, distance_m, yaw_rad / kDegree));
     }
   }
 

@@ -28,8 +28,9 @@ struct DriveSettings {
   double arrival_rad = 0.026;             ///< 1.5 degrees
   double arrival_patience_s = 8.0;        ///< but not longer than this after the reference's end
   double standing_m_s = 0.02;
-  double max_tilt_rad = 0.5235988;  ///< 30 degrees: tipped
-  double max_duration_factor = 3.0;
+  double max_tilt_rad = 0.5235988;     ///< 30 degrees: tipped
+  double max_duration_factor = 3.0;    ///< of the planned duration
+  double least_max_duration_s = 10.0;  ///< but a very short drive gets this long to settle
 };
 
 /// What the loop is connected to. Ground truth serves the record and the judging only.
