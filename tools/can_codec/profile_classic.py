@@ -2,6 +2,8 @@
 
 It needs one controller with a port on each bus. Three joints share a frame; rates come back at
 50 Hz, and what one FD frame carries is split where 8 bytes are too few."""
+from decimal import ROUND_UP, Decimal
+
 from dbc_text import Message, integer, measure, table
 from profile_fd import MODES, PI, QUALITIES
 from profile_fd import NODES  # noqa: F401 (the same participants)
@@ -68,7 +70,6 @@ def group_messages(number, bus, joints):
 
 def round_out(value):
     """To the frame's 1e-4, never narrower."""
-    from decimal import ROUND_UP, Decimal
     return Decimal(value).quantize(Decimal("0.0001"), rounding=ROUND_UP)
 
 

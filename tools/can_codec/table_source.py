@@ -103,7 +103,7 @@ def _row(signal, database):
     scale = Fraction(str(signal.scale))
     low, high = raw_range(signal)
     names = table_names(signal)
-    limits = [_number(attribute(signal, name, database)) for name in
+    limits = [_limit(attribute(signal, name, database)) for name in
               ("RateLimit", "AccelerationLimit", "PositionLower", "PositionUpper")]
     return (f"    {{\"{signal.name}\", \"{signal.unit or ''}\", "
             f"\"{attribute(signal, 'JointName', database)}\", "
@@ -122,6 +122,10 @@ def _bool(value):
 
 
 def _number(value):
+    return repr(float(value))
+
+
+def _limit(value):
     if abs(value) >= NO_POSITION_LIMIT:
         return "kInfinity" if value > 0 else "-kInfinity"
-    return repr(float(value))
+    return _number(value)
