@@ -234,6 +234,23 @@ TEST(Catalogue, FindsEveryJointOnTheBus) {
   }
 }
 
+TEST(Catalogue, StatesTheLimitsOfASlot) {
+  const SlotLimits boom = limits_of(slot_of("BOOM"));
+  EXPECT_EQ(boom.lower, -0.1);
+  EXPECT_EQ(boom.upper, 1.28);
+  EXPECT_EQ(boom.max_rate, 0.35);
+  EXPECT_EQ(boom.max_acceleration, 0.3);
+  const SlotLimits first = limits_of({0, 0});
+  EXPECT_EQ(first.lower, -0.49);
+  EXPECT_EQ(first.upper, 0.75);
+  const SlotLimits yaw = limits_of(slot_of("EE_YAW"));
+  EXPECT_EQ(yaw.lower, -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(yaw.upper, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(yaw.max_rate, 0.5);
+}
+
+TEST(Catalogue, HasTheHashOfTheDbc) { EXPECT_NE(dbc_hash(), 0u); }
+
 TEST(Catalogue, ASlotWithoutAJointHasNoLimits) {
   for (const JointSlot slot : {JointSlot{}, JointSlot{0, 4}, JointSlot{0, -1}, JointSlot{6, 0}}) {
     EXPECT_EQ(limits_of(slot).max_rate, 0.0);
