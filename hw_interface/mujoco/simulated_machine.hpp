@@ -3,35 +3,12 @@
 #include <memory>
 
 #include "hw_interface/machine_io.hpp"
+#include "hw_interface/mujoco/simulated_plant.hpp"
 #include "models/excavator/machine_model.hpp"
 #include "models/terrain/terrain_map.hpp"
 #include "models/types/result.hpp"
 
 namespace wex {
-
-struct SimulationSettings {
-  double timestep_s = 0.002;
-  double control_period_s = 0.01;  ///< 100 Hz joint loop
-  double ground_friction = 0.9;
-  double settle_time_s = 2.0;  ///< simulated before the first read, machine holding
-  bool load_balance = true;    ///< slow correction of the diagonal wheel loads
-};
-
-/// The truth about contacts and motion, for reports only: no controller may read it.
-struct GroundTruth {
-  double t_s = 0.0;
-  BaseCoordinates base{};
-  double base_vertical_rate_m_s = 0.0;
-  std::array<double, kNumWheels> wheel_load_n{};         ///< vertical, mean over the last 10 ms
-  std::array<double, kNumWheels> wheel_penetration_m{};  ///< disc below the ground, > 0 is into it
-  std::array<double, kNumWheels> tyre_deflection_m{};
-  std::array<double, kNumWheels>
-      side_slip_m{};  ///< integral of |patch velocity along the axle| while loaded
-  std::array<double, kNumWheels> wheel_travel_m{};
-  std::array<double, kNumWheels> airborne_s{};  ///< time without load
-  double stability_margin_m = 0.0;              ///< CoM to the nearest edge of the loaded wheels
-  bool body_contact = false;  ///< anything but wheels and bucket has touched the ground so far
-};
 
 /// The MuJoCo machine on a terrain: default implementation of MachineIo, lock step (wait_until
 /// simulates). Valve dead time and lag, dead band with its inverse, shared pump flow, wheel drives

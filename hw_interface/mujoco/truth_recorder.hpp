@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "hw_interface/mujoco/simulated_machine.hpp"
+#include "hw_interface/mujoco/simulated_plant.hpp"
 
 namespace wex {
 

@@ -1,11 +1,17 @@
 #include "hw_interface/mujoco/valve_chain.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace wex {
+namespace {
+
+constexpr double kShutTime_s = 0.05;  ///< from full flow, by the valve's spring
+
+}  // namespace
 
 ValveChain::ValveChain(const MachineModel& machine, double period_s, double dead_band)
-    : num_joints_(machine.num_joints()), dead_band_(dead_band) {
+    : num_joints_(machine.num_joints()), period_s_(period_s), dead_band_(dead_band) {
   WEX_EXPECTS(num_joints_ <= kMaxJoints && period_s > 0.0 && dead_band >= 0.0 && dead_band < 1.0);
   for (int i = 0; i < num_joints_; ++i) {
     const Joint& joint = machine.joints[i];
@@ -18,13 +24,20 @@ ValveChain::ValveChain(const MachineModel& machine, double period_s, double dead
   }
 }
 
-std::array<double, kMaxJoints> ValveChain::update(
-    const std::array<double, kMaxJoints>& spool,
-    const std::array<double, kMaxJoints>& wheel_rate) noexcept {
+std::array<double, kMaxJoints> ValveChain::update(const std::array<double, kMaxJoints>& spool,
+                                                  const std::array<double, kMaxJoints>& wheel_rate,
+                                                  bool released) noexcept {
   std::array<double, kMaxJoints> rate{};
   constexpr int kRing = kMaxDeadTimePeriods + 1;
   for (int i = 0; i < num_joints_; ++i) {
     Valve& valve = valves_[i];
+    if (!released && !valve.wheel) {
+      history_[i].fill(0.0);
+      const double slower = std::abs(valve.rate) - valve.max_rate * period_s_ / kShutTime_s;
+      valve.rate = std::copysign(std::max(0.0, slower), valve.rate);
+      rate[i] = valve.rate;
+      continue;
+    }
     history_[i][head_] = valve.wheel ? wheel_rate[i] : spool[i];
     const double input = history_[i][(head_ - valve.dead_time_periods + kRing) % kRing];
     double flow_rate = input;

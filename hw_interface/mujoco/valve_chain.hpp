@@ -17,8 +17,11 @@ class ValveChain {
 
   /// One control period: spool openings in [-1, 1] in, joint rates out (rad/s or m/s). Entries of
   /// wheels pass through the same dead time and lag as a rate, without spool.
+  ///   released  false: pilot pressure is vented and springs shut the valves, within 50 ms and
+  ///             whatever was on its way; wheels go on
   std::array<double, kMaxJoints> update(const std::array<double, kMaxJoints>& spool,
-                                        const std::array<double, kMaxJoints>& wheel_rate) noexcept;
+                                        const std::array<double, kMaxJoints>& wheel_rate,
+                                        bool released = true) noexcept;
 
  private:
   static constexpr int kMaxDeadTimePeriods = 127;
@@ -32,7 +35,7 @@ class ValveChain {
   };
 
   int num_joints_ = 0;
-  double dead_band_ = 0.0;
+  double period_s_ = 0.0, dead_band_ = 0.0;
   std::array<Valve, kMaxJoints> valves_{};
   std::array<std::array<double, kMaxDeadTimePeriods + 1>, kMaxJoints> history_{};  ///< ring
   int head_ = 0;
