@@ -3,6 +3,12 @@
 namespace wex::can {
 namespace {
 
+/// Ages that are not numbers are too old as well. Stamps are whole milliseconds.
+bool too_old(double age_s, double limit_s) noexcept {
+  constexpr double kTolerance_s = 1e-6;
+  return !(age_s < limit_s - kTolerance_s);
+}
+
 bool leads_to_motion(HostPhase phase) noexcept {
   return phase == HostPhase::kAsking || phase == HostPhase::kProving ||
          phase == HostPhase::kActive || phase == HostPhase::kHold;
@@ -33,20 +39,20 @@ HostCause fault_cause(const HostState& state, const HostInputs& in,
   if (in.mode == MachineMode::kFault) return HostCause::kMachineFault;
   if (!leads_to_motion(state.phase)) return HostCause::kNone;
   if (in.interface_lost) return HostCause::kInterfaceLost;
-  if (!(in.feedback_age_s <= times.fault_after_s)) return HostCause::kLostFeedback;
+  if (too_old(in.feedback_age_s, times.fault_after_s)) return HostCause::kLostFeedback;
   return HostCause::kNone;
 }
 
 /// kNone: the machine may move within its session.
 HostCause hold_cause(const HostInputs& in, const HostTimes& times) noexcept {
-  const bool stale = !(in.feedback_age_s <= times.hold_after_s);
+  const bool stale = too_old(in.feedback_age_s, times.hold_after_s);
   // An error frame alone proves nothing: the bus must be silent as well.
   if (stale && in.bus_off_reported) return HostCause::kBusOff;
   if (stale) return HostCause::kStaleFeedback;
   if (in.bus_stalled) return HostCause::kBusStalled;
   if (in.overflowed) return HostCause::kReceiveOverflow;
-  if (!(in.status_age_s <= times.status_hold_after_s) ||
-      !(in.estop_age_s <= times.estop_hold_after_s)) {
+  if (too_old(in.status_age_s, times.status_hold_after_s) ||
+      too_old(in.estop_age_s, times.estop_hold_after_s)) {
     return HostCause::kStaleStatus;
   }
   if (in.stop) return HostCause::kStopRequested;
@@ -197,7 +203,7 @@ HostState advance(const HostState& before, const HostInputs& in, const HostTimes
       }
       return state;
     case HostPhase::kUnconfigured:
-      if (in.complete && in.feedback_age_s <= times.hold_after_s) {
+      if (in.complete && !too_old(in.feedback_age_s, times.hold_after_s)) {
         if (in.dbc_matches) {
           return enter(state, HostPhase::kInactive, HostCause::kNone, in.now_s);
         }
@@ -205,7 +211,7 @@ HostState advance(const HostState& before, const HostInputs& in, const HostTimes
       }
       return state;
     case HostPhase::kInactive:
-      if (!in.complete || !in.dbc_matches || !(in.feedback_age_s <= times.fault_after_s)) {
+      if (!in.complete || !in.dbc_matches || too_old(in.feedback_age_s, times.fault_after_s)) {
         return enter(state, HostPhase::kUnconfigured, HostCause::kLostFeedback, in.now_s);
       }
       if (in.enable && !in.stop && in.mode == MachineMode::kReady && in.nonce != 0) {

@@ -9,6 +9,7 @@
 namespace wex::can {
 namespace {
 
+constexpr double kAgeTolerance_s = 1e-6;  ///< stamps are whole milliseconds
 constexpr double kNever_s = std::numeric_limits<double>::infinity();
 
 template <typename Message>
@@ -253,8 +254,9 @@ MachineState HostFeedback::state(std::int64_t now_ns) const noexcept {
     } else if (reported == JointQuality::kInvalid || reported == JointQuality::kNotAvailable) {
       quality = SignalQuality::kInvalid;
     } else {
-      quality = state.joint_age_s[i] > settings_.stale_after_s ? SignalQuality::kStale
-                                                               : SignalQuality::kOk;
+      quality = state.joint_age_s[i] >= settings_.stale_after_s - kAgeTolerance_s
+                    ? SignalQuality::kStale
+                    : SignalQuality::kOk;
     }
   }
   return state;

@@ -218,7 +218,7 @@ WriteOutcome HostSession::judge(const JointCommand& wanted) noexcept {
     }
   }
   if (automaton_.phase != HostPhase::kActive) return WriteOutcome::kRejectedNotActive;
-  if (!(feedback_.feedback_age_s(now_ns_) <= settings_.times.hold_after_s)) {
+  if (!(feedback_.feedback_age_s(now_ns_) < settings_.times.hold_after_s)) {
     return WriteOutcome::kRejectedStale;
   }
   if (wanted.valid_until_s < now_s()) return WriteOutcome::kRejectedExpired;

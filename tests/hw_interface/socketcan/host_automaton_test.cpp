@@ -1,0 +1,549 @@
+#include "hw_interface/socketcan/host_automaton.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+#include <string>
+
+namespace wex::can {
+namespace {
+
+constexpr double kPeriod_s = 0.01;
+
+/// The automaton with a machine that does what it should; a test changes one thing.
+class HostAutomaton : public ::testing::Test {
+ protected:
+  HostAutomaton() {
+    in_.complete = in_.dbc_matches = true;
+    in_.mode = MachineMode::kReady;
+    in_.nonce = 77;
+  }
+
+  void step() {
+    in_.now_s += kPeriod_s;
+    state_ = advance(state_, in_, times_);
+    in_.enable = in_.disable = in_.operator_reset = in_.masquerade = in_.crc_fault = false;
+    in_.restarted = in_.interface_lost = false;
+  }
+  void steps(int count) {
+    for (int i = 0; i < count; ++i) step();
+  }
+  HostOutputs out() const { return outputs_of(state_, in_); }
+
+  void ask() {
+    step();
+    ASSERT_EQ(state_.phase, HostPhase::kInactive);
+    in_.enable = true;
+    step();
+    ASSERT_EQ(state_.phase, HostPhase::kAsking);
+  }
+  void challenge(std::uint32_t value = 0xC0FFEE) {
+    in_.mode = MachineMode::kEnabling;
+    in_.challenge = value;
+    step();
+  }
+  void prove(std::uint32_t session = 0x5E55) {
+    in_.challenge = 0;
+    in_.session = session;
+    in_.neutral_sent = true;
+    steps(10);
+  }
+  void activate(std::uint32_t session = 0x5E55) {
+    ask();
+    challenge();
+    prove(session);
+    in_.mode = MachineMode::kEnabled;
+    step();
+    ASSERT_EQ(state_.phase, HostPhase::kActive);
+    in_.neutral_sent = false;
+  }
+  /// The electronics drop the session and become ready again.
+  void machine_ready() {
+    in_.mode = MachineMode::kReady;
+    in_.session = 0;
+    in_.challenge = 0;
+  }
+
+  HostInputs in_;
+  HostState state_;
+  HostTimes times_;
+};
+
+TEST_F(HostAutomaton, IsConfiguredOnceEverythingIsHeardInTheSameDbc) {
+  in_.complete = false;
+  steps(3);
+  EXPECT_EQ(state_.phase, HostPhase::kUnconfigured);
+  in_.complete = true;
+  in_.dbc_matches = false;
+  steps(3);
+  EXPECT_EQ(state_.phase, HostPhase::kUnconfigured);
+  EXPECT_EQ(state_.cause, HostCause::kOtherDbc);
+  in_.dbc_matches = true;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kInactive);
+  EXPECT_EQ(out().request, HostRequest::kNone);
+}
+
+TEST_F(HostAutomaton, IsNotConfiguredByOldFeedback) {
+  in_.feedback_age_s = 0.06;
+  steps(3);
+  EXPECT_EQ(state_.phase, HostPhase::kUnconfigured);
+  in_.feedback_age_s = std::numeric_limits<double>::quiet_NaN();
+  steps(3);
+  EXPECT_EQ(state_.phase, HostPhase::kUnconfigured);
+}
+
+TEST_F(HostAutomaton, AMachineThatFallsSilentBeforeASessionIsJustNotThere) {
+  step();
+  in_.feedback_age_s = 0.3;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kUnconfigured);
+  in_.feedback_age_s = 0.01;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kInactive) << "nothing was moving: no person is needed";
+}
+
+TEST_F(HostAutomaton, TheHandshakeEndsInANewSession) {
+  ask();
+  EXPECT_EQ(out().request, HostRequest::kEnable);
+  EXPECT_EQ(out().nonce, 77);
+  EXPECT_EQ(out().challenge_echo, 0U);
+  EXPECT_FALSE(out().send_commands);
+  challenge();
+  EXPECT_EQ(state_.phase, HostPhase::kProving);
+  EXPECT_EQ(out().challenge_echo, 0xC0FFEEU);
+  EXPECT_EQ(out().nonce, 77) << "the same through the handshake";
+  prove();
+  EXPECT_EQ(out().session, 0x5E55U);
+  EXPECT_TRUE(out().send_commands);
+  EXPECT_FALSE(out().live);
+  in_.mode = MachineMode::kEnabled;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kActive);
+  EXPECT_TRUE(out().live);
+}
+
+TEST_F(HostAutomaton, WithoutARequestNothingIsEverEnabled) {
+  step();
+  in_.mode = MachineMode::kEnabled;
+  in_.session = 0x5E55;
+  steps(50);
+  EXPECT_EQ(state_.phase, HostPhase::kInactive);
+  EXPECT_EQ(out().request, HostRequest::kDisable) << "a session of nobody is to end";
+  EXPECT_FALSE(out().send_commands);
+}
+
+TEST_F(HostAutomaton, ARequestCountsOnceAndOnlyWhenTheMachineIsReady) {
+  in_.mode = MachineMode::kInit;
+  step();
+  in_.enable = true;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kInactive);
+  in_.mode = MachineMode::kReady;
+  steps(5);
+  EXPECT_EQ(state_.phase, HostPhase::kInactive);
+}
+
+TEST_F(HostAutomaton, ARequestUnderAStopIsIgnored) {
+  step();
+  in_.stop = true;
+  in_.enable = true;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kInactive);
+  EXPECT_TRUE(out().send_stop);
+}
+
+TEST_F(HostAutomaton, AMachineThatDoesNotAnswerIsGivenUp) {
+  ask();
+  steps(99);
+  EXPECT_EQ(state_.phase, HostPhase::kAsking);
+  steps(3);
+  EXPECT_EQ(state_.phase, HostPhase::kInactive);
+  EXPECT_EQ(state_.cause, HostCause::kNoAnswer);
+  EXPECT_EQ(out().nonce, 0);
+}
+
+TEST_F(HostAutomaton, AChallengeFromBeforeTheRequestDoesNotCount) {
+  in_.challenge = 0xBAD;
+  ask();
+  challenge(0xBAD);
+  EXPECT_EQ(state_.phase, HostPhase::kAsking);
+  challenge(0xC0FFEE);
+  EXPECT_EQ(state_.phase, HostPhase::kProving);
+}
+
+TEST_F(HostAutomaton, ASessionBeforeAnythingWasProvedIsAViolation) {
+  ask();
+  in_.mode = MachineMode::kEnabling;
+  in_.session = 0x5E55;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kInactive);
+  EXPECT_EQ(state_.cause, HostCause::kHandshakeViolated);
+}
+
+TEST_F(HostAutomaton, AnotherChallengeInTheMiddleIsAViolation) {
+  ask();
+  challenge();
+  challenge(0xBEEF);
+  EXPECT_EQ(state_.phase, HostPhase::kInactive);
+  EXPECT_EQ(state_.cause, HostCause::kHandshakeViolated);
+}
+
+TEST_F(HostAutomaton, ASessionThatChangesInTheMiddleIsAViolation) {
+  ask();
+  challenge();
+  prove(1);
+  in_.session = 2;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kInactive);
+  EXPECT_EQ(state_.cause, HostCause::kHandshakeViolated);
+}
+
+TEST_F(HostAutomaton, TheSessionOfLastTimeIsNotAccepted) {
+  activate(0x5E55);
+  machine_ready();
+  step();
+  ASSERT_EQ(state_.phase, HostPhase::kInactive);
+  ask();
+  challenge();
+  prove(0x5E55);
+  EXPECT_EQ(state_.phase, HostPhase::kInactive);
+  EXPECT_EQ(state_.cause, HostCause::kHandshakeViolated);
+}
+
+TEST_F(HostAutomaton, EnabledBeforeTenNeutralCommandsIsAViolation) {
+  ask();
+  challenge();
+  in_.challenge = 0;
+  in_.session = 9;
+  in_.neutral_sent = true;
+  steps(8);
+  in_.mode = MachineMode::kEnabled;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kInactive);
+  EXPECT_EQ(state_.cause, HostCause::kHandshakeViolated);
+}
+
+TEST_F(HostAutomaton, EnabledWithoutASessionIsAViolation) {
+  ask();
+  challenge();
+  in_.challenge = 0;
+  in_.neutral_sent = true;
+  in_.mode = MachineMode::kEnabled;
+  steps(12);
+  EXPECT_EQ(state_.phase, HostPhase::kInactive);
+}
+
+TEST_F(HostAutomaton, TheHandshakeEndsWithTheMachineARestartAStopOrADisable) {
+  const auto interruptions = {+[](HostInputs& in) { in.mode = MachineMode::kInit; },
+                              +[](HostInputs& in) { in.restarted = true; },
+                              +[](HostInputs& in) { in.stop = true; },
+                              +[](HostInputs& in) { in.disable = true; }};
+  for (const auto interrupt : interruptions) {
+    in_ = HostInputs{};
+    in_.complete = in_.dbc_matches = true;
+    in_.mode = MachineMode::kReady;
+    in_.nonce = 5;
+    state_ = HostState{};
+    ask();
+    challenge();
+    interrupt(in_);
+    step();
+    EXPECT_EQ(state_.phase, HostPhase::kInactive);
+    EXPECT_FALSE(out().send_commands);
+  }
+}
+
+TEST_F(HostAutomaton, ATooLongProofIsGivenUp) {
+  ask();
+  challenge();
+  steps(102);
+  EXPECT_EQ(state_.phase, HostPhase::kInactive);
+  EXPECT_EQ(state_.cause, HostCause::kNoAnswer);
+}
+
+TEST_F(HostAutomaton, StaleFeedbackHoldsAt50MsAndFaultsAt200) {
+  activate();
+  in_.feedback_age_s = 0.049;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kActive);
+  in_.feedback_age_s = 0.05;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kHold);
+  EXPECT_EQ(state_.cause, HostCause::kStaleFeedback);
+  EXPECT_TRUE(out().send_commands) << "neutral ones";
+  EXPECT_FALSE(out().live);
+  EXPECT_FALSE(out().send_stop);
+  in_.feedback_age_s = 0.2;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kFault);
+  EXPECT_EQ(state_.cause, HostCause::kLostFeedback);
+  EXPECT_FALSE(out().send_commands);
+  EXPECT_TRUE(out().send_stop);
+  EXPECT_EQ(out().session, 0U);
+  EXPECT_EQ(out().request, HostRequest::kDisable);
+}
+
+TEST_F(HostAutomaton, HoldIsLeftAfterTenNeutralCommandsWithoutACause) {
+  activate();
+  in_.feedback_age_s = 0.06;
+  in_.neutral_sent = true;
+  steps(5);
+  in_.feedback_age_s = 0.01;
+  steps(9);
+  EXPECT_EQ(state_.phase, HostPhase::kHold);
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kActive);
+  EXPECT_EQ(state_.holds, 1);
+  EXPECT_EQ(out().session, 0x5E55U) << "the same session";
+}
+
+TEST_F(HostAutomaton, ACauseThatComesBackStartsTheCountAgain) {
+  activate();
+  in_.feedback_age_s = 0.06;
+  step();
+  in_.neutral_sent = true;
+  in_.feedback_age_s = 0.01;
+  steps(9);
+  in_.bus_stalled = true;
+  step();
+  EXPECT_EQ(state_.cause, HostCause::kBusStalled);
+  in_.bus_stalled = false;
+  steps(9);
+  EXPECT_EQ(state_.phase, HostPhase::kHold);
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kActive);
+}
+
+TEST_F(HostAutomaton, HoldIsNotLeftWithoutNeutralCommandsOnTheBus) {
+  activate();
+  in_.bus_stalled = true;
+  step();
+  in_.bus_stalled = false;
+  steps(100);
+  EXPECT_EQ(state_.phase, HostPhase::kHold);
+}
+
+TEST_F(HostAutomaton, EveryCauseOfAHoldHolds) {
+  struct Case {
+    void (*apply)(HostInputs&);
+    HostCause cause;
+  };
+  const Case cases[] = {
+      {[](HostInputs& in) { in.bus_stalled = true; }, HostCause::kBusStalled},
+      {[](HostInputs& in) { in.overflowed = true; }, HostCause::kReceiveOverflow},
+      {[](HostInputs& in) { in.status_age_s = 0.26; }, HostCause::kStaleStatus},
+      {[](HostInputs& in) { in.estop_age_s = 0.11; }, HostCause::kStaleStatus},
+      {[](HostInputs& in) { in.mode = MachineMode::kHold; }, HostCause::kMachineHolds},
+      {[](HostInputs& in) { in.stop = true; }, HostCause::kStopRequested}};
+  for (const Case& c : cases) {
+    activate();
+    const HostInputs good = in_;
+    c.apply(in_);
+    step();
+    EXPECT_EQ(state_.phase, HostPhase::kHold) << describe(c.cause);
+    EXPECT_EQ(state_.cause, c.cause) << describe(c.cause);
+    EXPECT_FALSE(out().live);
+    in_ = good;
+    machine_ready();
+    step();
+    state_.old_session = 0;
+  }
+}
+
+TEST_F(HostAutomaton, AHoldThatWasAskedForIsNotCounted) {
+  activate();
+  in_.stop = true;
+  step();
+  EXPECT_TRUE(out().send_stop);
+  in_.mode = MachineMode::kHold;
+  steps(20);
+  in_.stop = false;
+  in_.neutral_sent = true;
+  steps(20);
+  EXPECT_EQ(state_.phase, HostPhase::kHold) << "the machine still holds";
+  in_.mode = MachineMode::kEnabled;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kActive) << "neutral commands sent meanwhile count";
+  EXPECT_EQ(state_.holds, 0);
+}
+
+TEST_F(HostAutomaton, AForgedBusOffDoesNothingWhileTheMachineIsHeard) {
+  activate();
+  in_.bus_off_reported = true;
+  steps(20);
+  EXPECT_EQ(state_.phase, HostPhase::kActive);
+  EXPECT_FALSE(out().silent);
+}
+
+TEST_F(HostAutomaton, BusOffWithSilenceStopsSendingAndEndsTheSession) {
+  activate();
+  in_.bus_off_reported = true;
+  in_.feedback_age_s = 0.06;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kHold);
+  EXPECT_EQ(state_.cause, HostCause::kBusOff);
+  EXPECT_TRUE(out().silent);
+  in_.feedback_age_s = 0.01;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kInactive) << "no way back into the session";
+  EXPECT_EQ(state_.cause, HostCause::kBusOff);
+}
+
+TEST_F(HostAutomaton, AStaleHoldBecomesBusOffOnceItIsReported) {
+  activate();
+  in_.feedback_age_s = 0.06;
+  step();
+  in_.bus_off_reported = true;
+  step();
+  EXPECT_EQ(state_.cause, HostCause::kBusOff);
+  step();
+  EXPECT_EQ(state_.cause, HostCause::kBusOff);
+  in_.feedback_age_s = 0.25;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kFault);
+}
+
+TEST_F(HostAutomaton, TheSessionEndsWithTheMachines) {
+  const auto ends = {+[](HostInputs& in) { in.session = 0x1234; },
+                     +[](HostInputs& in) { in.restarted = true; },
+                     +[](HostInputs& in) { in.mode = MachineMode::kReady; },
+                     +[](HostInputs& in) { in.mode = MachineMode::kInit; }};
+  for (const auto end : ends) {
+    activate();
+    end(in_);
+    step();
+    EXPECT_EQ(state_.phase, HostPhase::kInactive);
+    EXPECT_EQ(state_.cause, HostCause::kSessionEnded);
+    machine_ready();
+    steps(50);
+    EXPECT_EQ(state_.phase, HostPhase::kInactive) << "nothing resumes by itself";
+    state_.old_session = 0;
+  }
+}
+
+TEST_F(HostAutomaton, DisableEndsTheSession) {
+  activate();
+  in_.disable = true;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kInactive);
+  EXPECT_EQ(out().request, HostRequest::kDisable);
+  machine_ready();
+  step();
+  EXPECT_EQ(out().request, HostRequest::kNone);
+}
+
+TEST_F(HostAutomaton, EveryFaultIsLatchedUntilAPersonResets) {
+  struct Case {
+    void (*apply)(HostInputs&);
+    HostCause cause;
+  };
+  const Case cases[] = {
+      {[](HostInputs& in) { in.masquerade = true; }, HostCause::kMasquerade},
+      {[](HostInputs& in) { in.crc_fault = true; }, HostCause::kCrcErrors},
+      {[](HostInputs& in) { in.mode = MachineMode::kFault; }, HostCause::kMachineFault},
+      {[](HostInputs& in) { in.interface_lost = true; }, HostCause::kInterfaceLost},
+      {[](HostInputs& in) { in.feedback_age_s = 1.0; }, HostCause::kLostFeedback}};
+  for (const Case& c : cases) {
+    activate();
+    const HostInputs good = in_;
+    c.apply(in_);
+    step();
+    EXPECT_EQ(state_.phase, HostPhase::kFault) << describe(c.cause);
+    EXPECT_EQ(state_.cause, c.cause);
+    const double now_s = in_.now_s;
+    in_ = good;
+    in_.now_s = now_s;
+    in_.enable = true;
+    machine_ready();
+    steps(100);
+    EXPECT_EQ(state_.phase, HostPhase::kFault);
+    in_.operator_reset = true;
+    steps(2);
+    EXPECT_EQ(state_.phase, HostPhase::kInactive) << describe(c.cause);
+    state_.old_session = 0;
+  }
+}
+
+TEST_F(HostAutomaton, MasqueradeAndCrcErrorsCountOutsideASessionToo) {
+  step();
+  in_.masquerade = true;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kFault);
+}
+
+TEST_F(HostAutomaton, AResetWaitsASecondForTheMachineToFollow) {
+  activate();
+  in_.mode = MachineMode::kFault;
+  step();
+  in_.operator_reset = true;
+  steps(50);
+  EXPECT_EQ(state_.phase, HostPhase::kFault) << "the cause is not gone";
+  machine_ready();
+  steps(2);
+  EXPECT_EQ(state_.phase, HostPhase::kInactive);
+}
+
+TEST_F(HostAutomaton, AResetThatTheMachineDoesNotFollowIsForgotten) {
+  activate();
+  in_.mode = MachineMode::kFault;
+  step();
+  in_.operator_reset = true;
+  steps(110);
+  machine_ready();
+  steps(50);
+  EXPECT_EQ(state_.phase, HostPhase::kFault);
+}
+
+TEST_F(HostAutomaton, TheEStopIsLatchedAndWinsOverEverything) {
+  for (const bool by_chain : {true, false}) {
+    activate();
+    const HostInputs good = in_;
+    if (by_chain) {
+      in_.estop_open = true;
+    } else {
+      in_.mode = MachineMode::kEStop;
+    }
+    in_.masquerade = true;
+    step();
+    EXPECT_EQ(state_.phase, HostPhase::kEStop);
+    EXPECT_EQ(state_.cause, HostCause::kEStopOpen);
+    EXPECT_FALSE(out().send_commands);
+    EXPECT_EQ(out().session, 0U);
+    in_.operator_reset = true;
+    steps(20);
+    EXPECT_EQ(state_.phase, HostPhase::kEStop) << "still open";
+    const double now_s = in_.now_s;
+    in_ = good;
+    in_.now_s = now_s + 2.0;
+    machine_ready();
+    steps(100);
+    EXPECT_EQ(state_.phase, HostPhase::kEStop) << "closed, but nobody has reset";
+    in_.operator_reset = true;
+    steps(2);
+    EXPECT_EQ(state_.phase, HostPhase::kInactive);
+    state_.old_session = 0;
+  }
+}
+
+TEST_F(HostAutomaton, AFaultBecomesAnEStop) {
+  activate();
+  in_.crc_fault = true;
+  step();
+  in_.estop_open = true;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kEStop);
+}
+
+TEST_F(HostAutomaton, EveryCauseHasItsOwnWords) {
+  std::set<std::string> words;
+  for (int cause = 0; cause <= static_cast<int>(HostCause::kOtherDbc); ++cause) {
+    words.insert(describe(static_cast<HostCause>(cause)));
+  }
+  EXPECT_EQ(words.size(), static_cast<std::size_t>(HostCause::kOtherDbc) + 1);
+  EXPECT_EQ(words.count("unknown cause"), 0U);
+}
+
+}  // namespace
+}  // namespace wex::can
