@@ -9,6 +9,7 @@
 #include "tools/bench/kinematics_bench.hpp"
 #include "tools/bench/mpc_bench.hpp"
 #include "tools/bench/terrain_bench.hpp"
+#include "tools/wex/machine_command.hpp"
 #include "tools/wex/output_folder.hpp"
 #include "tools/wex/pipeline.hpp"
 
@@ -34,6 +35,7 @@ struct Options {
   TerrainOptions terrain;
   ModelOptions model;
   DriveBenchOptions drive_bench;
+  MachineOptions can_machine;
 };
 
 template <typename Parse>
@@ -149,6 +151,43 @@ void add_model(CLI::App& app, ModelOptions& model) {
       *app.add_subcommand("model", "Write the machine's MuJoCo model (the machine alone)");
   command.add_option("--mjcf", model.mjcf, "File to write")->type_name("FILE")->required();
   add_machine(command, model.machine);
+}
+
+void add_can_machine(CLI::App& app, MachineOptions& machine) {
+  CLI::App& command = *app.add_subcommand(
+      "machine", "Be the machine at the other end of a CAN bus (simulated), until it is ended");
+  command.footer(
+      "Speaks wex.dbc from the electronics' side: own automaton, limits and time-outs, MuJoCo "
+      "behind\nthem. --log is the truth by which a run is judged. Ended by SIGTERM or Ctrl-C.");
+  command.add_option("map", machine.map, "Elevation map to stand on [flat ground]")
+      ->type_name("MAP");
+  command.add_option("--can", machine.can_interface, "CAN interface, such as vcan0")
+      ->type_name("IFACE")
+      ->required();
+  add_pose(command, "--start", machine.start,
+           "Where it stands, in the map's frame [the JSON beside MAP; 0,0,0 on flat ground]");
+  command.add_flag("--lock-step", machine.lock_step,
+                   "The clock goes on as the host's LockStep frames let it (functional tests)");
+  command.add_option("--log", machine.log, "CSV of the machine's own truth, 100 Hz")
+      ->type_name("FILE");
+  command
+      .add_option_function<double>(
+          "--estop-after", [&machine](double s) { machine.estop_after_s = s; },
+          "Open the e-stop chain after S seconds of machine time")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("S");
+  command
+      .add_option_function<double>(
+          "--exit-after", [&machine](double s) { machine.exit_after_s = s; },
+          "End after S seconds of machine time")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("S");
+  command
+      .add_option_function<std::uint64_t>(
+          "--seed", [&machine](std::uint64_t seed) { machine.seed = seed; },
+          "Seed of challenges and sessions, for repeatable runs [the kernel's generator]")
+      ->type_name("N");
+  add_machine(command, machine.machine);
 }
 
 void add_bench(CLI::App& app, DriveBenchOptions& drive) {
@@ -291,6 +330,7 @@ int run_cli(int argc, const char* const* argv, std::ostream& out, std::ostream& 
   add_terrain(app, options.terrain);
   add_model(app, options.model);
   add_bench(app, options.drive_bench);
+  add_can_machine(app, options.can_machine);
   if (const auto problem = unknown_command(app, argc, argv)) {
     return refuse(err, {ErrorCode::kBadInput, *problem + " (see wex --help)"});
   }
@@ -310,6 +350,10 @@ int run_cli(int argc, const char* const* argv, std::ostream& out, std::ostream& 
   if (name == "terrain") return terrain_command(options.terrain, out, err);
   if (name == "model") return model_command(options.model, out, err);
   if (name == "bench") return bench_command(command, options.drive_bench, out, err);
+  if (name == "machine") {
+    const Result<void> ran = run_machine(options.can_machine, out);
+    return ran ? 0 : refuse(err, ran.error());
+  }
   options.run.depth = name == "plan" ? Depth::kPlanOnly : Depth::kDrive;
   return run_command(options, out, err);
 }
