@@ -48,7 +48,7 @@ class Report : public ::testing::Test {
       s.t_s = 0.1 * k;
       s.base[kBaseX] = 1.0 + 0.03 * k;
       s.scalar_joints = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names_.size()));
-      s.wheel_load_n = {30e3, k < 50 ? 30e3 : 0.0, 30e3, 30e3};
+      s.contacts = {true, k < 50, true, true, false};
       s.wheel_m.fill(s.base.head<2>());
       s.scheduled_margin_m = s.loaded_margin_m = 1.0;
       drive.samples.push_back(s);

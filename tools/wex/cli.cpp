@@ -118,6 +118,19 @@ void add_run(CLI::App& app, Options& options) {
       ->check(CLI::Range(0, 99))
       ->type_name("N")
       ->capture_default_str();
+  CLI::Option& can = *command.add_option("--can", run.can_interface,
+                                         "Drive the machine on this CAN interface, from where it "
+                                         "stands, instead of the simulation");
+  can.type_name("IFACE")->check(parsed_by(check_interface_name));
+  const auto add_pace = [&](const char* name, CanPace pace, const char* help) {
+    return command.add_flag_callback(
+                      name, [&run, pace] { run.can_pace = pace; }, help)
+        ->needs(&can);
+  };
+  CLI::Option* lock_step = add_pace("--lock-step", CanPace::kLockStep,
+                                    "The machine's clock waits [as the machine announces]");
+  add_pace("--real-time", CanPace::kRealTime, "The machine's clock does not wait")
+      ->excludes(lock_step);
 }
 
 void add_plan(CLI::App& app, Options& options) {

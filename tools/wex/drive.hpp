@@ -31,17 +31,23 @@ struct DriveSettings {
   double max_tilt_rad = 0.5235988;     ///< 30 degrees: tipped
   double max_duration_factor = 3.0;    ///< of the planned duration
   double least_max_duration_s = 10.0;  ///< but a very short drive gets this long to settle
+  double hold_patience_s = 5.0;        ///< how long the machine may hold without being asked to
+  double after_loss_s = 1.5;  ///< looked at for so long once the machine is not active any more
+  bool solve_beside = false;  ///< solves on a thread of its own: the machine's clock does not wait
 };
 
-/// What the loop is connected to. Ground truth serves the record and the judging only.
+/// What the loop is connected to. Ground truth serves the record and the judging only. All but
+/// `solve` may be empty.
 struct DriveInstruments {
-  std::function<HorizonResult(const HorizonInput&)> solve;
+  std::function<HorizonResult(const HorizonInput&)> solve;  ///< called from one thread at a time
   std::function<GroundTruth()> ground_truth;
-  std::function<Eigen::VectorXd()> scalar_joints;
+  std::function<Eigen::VectorXd()> scalar_joints;  ///< default: made from the measured coordinates
+  std::function<std::string()> cause;              ///< why the machine holds or was stopped
   std::function<void(double fraction, double margin_m)> on_progress;  ///< once per MPC period
 };
 
-/// Drives the machine along the refined trajectory in lock step with its clock.
+/// Drives the machine along the refined trajectory by its clock. A machine that holds by itself is
+/// waited for, and the reference with it; one that is not active any more ends the drive.
 ///   returns  always a record; record.failure says why the goal was not reached
 [[nodiscard]] DriveRecord drive(const TerrainMap& terrain, const MachineModel& machine,
                                 const RefinedTrajectory& reference, const Pose2& goal,

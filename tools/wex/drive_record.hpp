@@ -12,13 +12,16 @@
 
 namespace wex::app {
 
+/// Load from which on an executed contact counts as one [N].
+inline constexpr double kContactLoadN = 1000.0;
+
 /// One line of the executed motion, for files, plots and judging. Local world frame; t = 0 when
 /// control began.
 struct DriveSample {
   double t_s = 0.0;
   BaseCoordinates base{};
-  Eigen::VectorXd scalar_joints;                      ///< joints of model.xml in its order
-  std::array<double, kNumWheels> wheel_load_n{};      ///< measured by the simulation
+  Eigen::VectorXd scalar_joints;  ///< joints of model.xml in its order
+  ContactFlags contacts{};  ///< measured load over kContactLoadN; scheduled where none is measured
   std::array<Eigen::Vector2d, kNumWheels> wheel_m{};  ///< wheel centres, xy
   double scheduled_margin_m = 0.0;  ///< centre of mass to the edge of the scheduled wheels
   double loaded_margin_m = 0.0;     ///< the same of the wheels that carry load
@@ -33,9 +36,11 @@ struct SolveSample {
   double cpu_time_s = 0.0;  ///< thread CPU time
   int iterations = 0;
   bool feasible = false, usable = false;
+  bool late = false;  ///< there only after the moment it was computed for
 };
 
-/// Integrals and extremes that the machine's ground truth keeps, over the drive.
+/// Integrals and extremes over the drive. What only a simulation's ground truth knows is NaN on a
+/// machine without one.
 struct DriveExtremes {
   double max_roll_rad = 0.0, max_pitch_rad = 0.0;
   double min_scheduled_margin_m = 0.0, min_loaded_margin_m = 0.0;

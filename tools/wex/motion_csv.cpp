@@ -82,9 +82,7 @@ std::string executed_motion_csv(const std::vector<std::string>& joint_names,
                                 const Eigen::Vector2d& map_origin_m) {
   MotionCsv csv(joint_names, map_origin_m);
   for (const DriveSample& s : samples) {
-    ContactFlags contacts{};
-    for (int i = 0; i < kNumWheels; ++i) contacts[i] = s.wheel_load_n[i] > kContactLoadN;
-    csv.add(s.t_s, s.base, s.scalar_joints, contacts);
+    csv.add(s.t_s, s.base, s.scalar_joints, s.contacts);
   }
   return csv.take();
 }

@@ -10,9 +10,6 @@
 
 namespace wex::app {
 
-/// Load from which on an executed contact counts as one [N].
-inline constexpr double kContactLoadN = 1000.0;
-
 /// Planned motion as CSV, at least 20 rows a second: t, base_x .. base_qz, one column per scalar
 /// joint of model.xml, contact_LF .. contact_ARM. Positions in the map frame.
 ///   joint_names   scalar_joint_names(machine)
@@ -22,7 +19,7 @@ inline constexpr double kContactLoadN = 1000.0;
                                              const std::vector<WholeBodyNode>& nodes,
                                              const Eigen::Vector2d& map_origin_m);
 
-/// Executed motion in the same columns; contacts are measured loads.
+/// Executed motion in the same columns.
 [[nodiscard]] std::string executed_motion_csv(const std::vector<std::string>& joint_names,
                                               const std::vector<DriveSample>& samples,
                                               const Eigen::Vector2d& map_origin_m);

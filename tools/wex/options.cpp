@@ -49,6 +49,16 @@ Result<std::optional<double>> parse_solve_delay(const std::string& text) {
   return std::optional<double>{*milliseconds * 1e-3};
 }
 
+Result<void> check_interface_name(const std::string& text) {
+  constexpr std::size_t kLongest = 15;
+  const bool allowed = !text.empty() && text.size() <= kLongest && text != "." && text != ".." &&
+                       text.find_first_of("/ \t\n:") == std::string::npos;
+  if (allowed) return {};
+  return fail(ErrorCode::kBadInput, "'" + text +
+                                        "' is no name of a network interface: expected 1 to 15 "
+                                        "characters such as can0");
+}
+
 int exit_code(ErrorCode code) noexcept {
   switch (code) {
     case ErrorCode::kBadInput:

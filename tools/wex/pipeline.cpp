@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "hw_interface/socketcan/socketcan_machine.hpp"
 #include "initializer/make_plan.hpp"
 #include "models/excavator/mjcf.hpp"
 #include "models/types/cpu_clock.hpp"
@@ -85,11 +86,14 @@ class FrameRecorder {
 class Pipeline {
  public:
   Pipeline(const RunOptions& options, Scenario scenario, std::vector<std::string> joint_names,
-           std::string model_xml, OutputFolder folder, Stopwatch watch, Progress& progress)
+           std::string model_xml, OutputFolder folder, std::unique_ptr<can::SocketCanMachine> bus,
+           Stopwatch watch, Progress& progress)
       : scenario_(std::move(scenario)),
         joint_names_(std::move(joint_names)),
         model_xml_(std::move(model_xml)),
         folder_(std::move(folder)),
+        bus_(std::move(bus)),
+        lock_step_(bus_ && bus_->lock_step()),
         watch_(watch),
         progress_(progress) {
     report_.options = options;
@@ -102,7 +106,7 @@ class Pipeline {
     report_.stages["load"] = watch_.lap();
     Result<void> done = plan();
     if (done && go_on()) done = refine_plan();
-    if (done && go_on()) done = drive_it();
+    if (done && go_on()) done = bus_ ? drive_on_bus() : drive_simulation();
     if (done) done = draw();
     if (!done) return tl::unexpected(done.error());
     report_.stages["report"] = watch_.lap();
@@ -123,6 +127,7 @@ class Pipeline {
     Result<Plan> plan =
         make_plan(scenario_.terrain, scenario_.machine, scenario_.task, settings,
                   [this](const PlanProgress& p) {
+                    listen();
                     progress_.update(format("%.1f s, ", p.elapsed_s) +
                                      (p.best_cost ? format("best path costs %.2f m", *p.best_cost)
                                                   : std::string("no path yet")));
@@ -134,7 +139,7 @@ class Pipeline {
     }
     // From here on this run owns the folder.
     folder_.remove_stale({"result.json", "plan.csv", "refined.csv", "executed.csv", "model.xml",
-                          "overview.png", "timeline.png", "frames"});
+                          "overview.png", "timeline.png", "frames", "bus.log"});
     if (Result<void> done = folder_.publish_text("model.xml", model_xml_); !done) return done;
     if (!plan) {
       progress_.end("failed");
@@ -151,6 +156,7 @@ class Pipeline {
     progress_.begin("refine");
     Result<RefinedTrajectory> refined = refine(
         scenario_.terrain, scenario_.machine, *report_.plan, {}, [this](const SolveIteration& i) {
+          listen();
           progress_.update(
               format("iteration %d, infeasibility %.1e", i.iteration, i.infeasibility));
         });
@@ -166,7 +172,12 @@ class Pipeline {
     return publish_motion("refined.csv", report_.refined->nodes);
   }
 
-  Result<void> drive_it() {
+  /// Takes what has come meanwhile, so that the bus's receive buffer does not overflow.
+  void listen() {
+    if (bus_) (void)bus_->read();
+  }
+
+  Result<void> drive_simulation() {
     progress_.begin("drive");
     Result<std::unique_ptr<SimulatedMachine>> machine = SimulatedMachine::create(
         scenario_.machine, scenario_.terrain, report_.refined->nodes.front().q);
@@ -197,7 +208,56 @@ class Pipeline {
     time.wall_s -= frames.time().wall_s;
     report_.stages["drive"] = time;
     report_.stages["frames"] = frames.time();
+    return end_of_drive();
+  }
+
+  /// Whatever happens to the drive, the machine is left disabled and the bus reported.
+  Result<void> drive_on_bus() {
+    progress_.begin("drive");
+    if (report_.options.frames > 0) {
+      report_.warnings.push_back(
+          "no frames and no ground truth: the machine on the bus is not simulated here");
+    }
+    report_.simulation_cpu_s = std::numeric_limits<double>::quiet_NaN();
+    RecedingHorizon optimizer(scenario_.terrain, scenario_.machine, *report_.refined);
+    DriveInstruments instruments;
+    instruments.solve = [&](const HorizonInput& input) { return optimizer.solve(input); };
+    instruments.cause = [this] { return can::describe(bus_->cause()); };
+    instruments.on_progress = [&](double fraction, double margin_m) {
+      progress_.update(
+          format("%3.0f %% of the drive, stability margin %.2f m", 100.0 * fraction, margin_m));
+    };
+    DriveSettings settings;
+    settings.solve_delay_s = report_.options.solve_delay_s;
+    settings.solve_beside = !lock_step_;
+    if (const Result<void> enabled = bus_->activate(); enabled) {
+      report_.drive = drive(scenario_.terrain, scenario_.machine, *report_.refined,
+                            scenario_.task.goal, *bus_, instruments, settings);
+      report_.failure = report_.drive->failure;
+    } else {
+      report_.failure = enabled.error();
+    }
+    report_.bus = bus_report(report_.options.can_interface, lock_step_, *bus_);
+    bus_->deactivate();
+    report_.bus->statistics = bus_->statistics();
+    StageTime time = watch_.lap();
+    if (settings.solve_beside && report_.drive) {
+      for (const SolveSample& solve : report_.drive->solves) time.cpu_s += solve.cpu_time_s;
+    }
+    report_.stages["drive"] = time;
+    if (report_.failure) {
+      const Result<void> written = folder_.publish("bus.log", [&](const auto& file) {
+        return bus_->recorder().write(file.string(), report_.options.can_interface);
+      });
+      if (!written) return written;
+      report_.bus->log = "bus.log";
+    }
+    return end_of_drive();
+  }
+
+  Result<void> end_of_drive() {
     progress_.end(report_.failure ? report_.failure->message : "goal reached");
+    if (!report_.drive) return {};
     return folder_.publish_text(
         "executed.csv",
         executed_motion_csv(joint_names_, report_.drive->samples, report_.map_origin_m));
@@ -228,17 +288,56 @@ class Pipeline {
   std::vector<std::string> joint_names_;
   std::string model_xml_;
   OutputFolder folder_;
+  std::unique_ptr<can::SocketCanMachine> bus_;  ///< empty: the simulation
+  bool lock_step_;
   Stopwatch watch_;
   Progress& progress_;
   RunReport report_;
 };
+
+can::SocketCanSettings::Pace pace_of(CanPace pace) {
+  switch (pace) {
+    case CanPace::kRealTime:
+      return can::SocketCanSettings::Pace::kRealTime;
+    case CanPace::kLockStep:
+      return can::SocketCanSettings::Pace::kLockStep;
+    case CanPace::kAsAnnounced:
+      break;
+  }
+  return can::SocketCanSettings::Pace::kAsAnnounced;
+}
+
+/// The machine on the bus tells where it stands.
+Result<Pose2> connect(const RunOptions& options, const TerrainMap& terrain,
+                      const MachineModel& machine, std::unique_ptr<can::SocketCanMachine>& bus) {
+  can::SocketCanSettings settings;
+  settings.pace = pace_of(options.can_pace);
+  auto opened =
+      can::SocketCanMachine::open(options.can_interface, machine, terrain.map_origin_m(), settings);
+  if (!opened) return tl::unexpected(opened.error());
+  bus = std::move(*opened);
+  const MachineState state = bus->read();
+  return Pose2{state.base[kBaseX], state.base[kBaseY], state.base[kBaseYaw]};
+}
 
 }  // namespace
 
 Result<RunReport> run_pipeline(const RunOptions& options, Progress& progress) {
   const Stopwatch watch;
   progress.begin("load");
-  Result<Scenario> scenario = load_scenario(options);
+  std::unique_ptr<can::SocketCanMachine> bus;
+  MeasureStart measure_start;
+  if (!options.can_interface.empty()) {
+    if (options.start) {
+      return fail(ErrorCode::kBadInput,
+                  "--start and --can exclude each other: the machine on the bus says where it "
+                  "stands");
+    }
+    measure_start = [&](const TerrainMap& terrain, const MachineModel& machine) {
+      return connect(options, terrain, machine, bus);
+    };
+  }
+  Result<Scenario> scenario = load_scenario(options, measure_start);
   if (!scenario) return tl::unexpected(scenario.error());
   Result<OutputFolder> folder = OutputFolder::open(options.out);
   if (!folder) return tl::unexpected(folder.error());
@@ -248,7 +347,7 @@ Result<RunReport> run_pipeline(const RunOptions& options, Progress& progress) {
   if (!model_xml) return tl::unexpected(model_xml.error());
   progress.end(options.map.string());
   return Pipeline(options, std::move(*scenario), std::move(*joint_names), std::move(*model_xml),
-                  std::move(*folder), watch, progress)
+                  std::move(*folder), std::move(bus), watch, progress)
       .run();
 }
 

@@ -68,7 +68,7 @@ SolveStatistics statistics(const std::vector<SolveSample>& solves) {
   SolveStatistics s;
   for (const SolveSample& solve : solves) {
     s.times_ms.push_back(1e3 * solve.cpu_time_s);
-    s.misses += s.times_ms.back() > kMissMs;
+    s.misses += solve.late || s.times_ms.back() > kMissMs;
     s.unusable += !solve.usable;
     s.infeasible += !solve.feasible;
     s.mean_iterations += solve.iterations / static_cast<double>(solves.size());
@@ -146,7 +146,7 @@ double side_slip_ratio(const DriveExtremes& extremes) {
     return std::accumulate(values.begin(), values.end(), 0.0);
   };
   const double travel_m = sum(extremes.travel_m);
-  return travel_m > 0.0 ? sum(extremes.side_slip_m) / travel_m : 0.0;
+  return travel_m <= 0.0 ? 0.0 : sum(extremes.side_slip_m) / travel_m;
 }
 
 std::string result_json(const RunReport& report) {
@@ -180,6 +180,7 @@ std::string result_json(const RunReport& report) {
     json["mpc"] = mpc_json(*report.drive);
     json["drive"] = drive_json(report);
   }
+  if (report.bus) json["bus"] = bus_json(*report.bus);
   json["warnings"] = report.warnings;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -220,7 +221,14 @@ std::string summary_table(const RunReport& report) {
     row("stability margin", "%.2f m at least", x.min_scheduled_margin_m);
     row("tilt", "roll %.1f, pitch %.1f degrees at most", x.max_roll_rad * kDegrees,
         x.max_pitch_rad * kDegrees);
-    row("side slip", "%.2f %%", 100.0 * side_slip_ratio(x));
+    const double slip = side_slip_ratio(x);
+    if (std::isfinite(slip)) row("side slip", "%.2f %%", 100.0 * slip);
+  }
+  if (report.bus) {
+    const can::BusStatistics& bus = report.bus->statistics;
+    row("bus", "%s, %s, load %.0f %%, %ld frames lost, %ld CRC errors, %ld holds, %ld faults",
+        report.bus->interface_name.c_str(), report.bus->lock_step ? "lock step" : "real time",
+        100.0 * bus.bus_load, bus.frames_lost(), bus.crc_errors, bus.holds, bus.faults);
   }
   row("results", "%s", report.options.out.string().c_str());
   for (const std::string& warning : report.warnings) table += "  warning: " + warning + "\n";

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "models/types/plan.hpp"
+#include "tools/wex/bus_report.hpp"
 #include "tools/wex/drive_record.hpp"
 #include "tools/wex/options.hpp"
 
@@ -25,7 +26,8 @@ struct RunReport {
   std::optional<Plan> plan;
   std::optional<RefinedTrajectory> refined;
   std::optional<DriveRecord> drive;
-  double simulation_cpu_s = 0.0;      ///< part of the drive spent in the simulation
+  double simulation_cpu_s = 0.0;      ///< part of the drive spent in the simulation; NaN: none
+  std::optional<BusReport> bus;       ///< of a run on a CAN bus
   std::optional<Error> failure;       ///< nothing: the goal was reached (or the plan was made)
   std::vector<std::string> warnings;  ///< what could not be reported, e.g. a picture
 };
@@ -38,7 +40,7 @@ struct RunReport {
 [[nodiscard]] double percentile(std::vector<double> values, double p);
 
 /// Side slip of the whole machine: sum over the wheels of the integral of |patch velocity along
-/// the axle| while loaded, divided by their travel; 0 without travel.
+/// the axle| while loaded, divided by their travel; 0 without travel, NaN where it is not known.
 [[nodiscard]] double side_slip_ratio(const DriveExtremes& extremes);
 
 /// result.json, schema "wex-result-1" (fields: tools/wex/README.md).

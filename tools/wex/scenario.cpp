@@ -10,13 +10,14 @@ namespace wex::app {
 namespace {
 
 /// Start and goal in the map frame: options first, the JSON beside the map for what is missing.
-Result<Task> task_in_map_frame(const RunOptions& options) {
+Result<Task> task_in_map_frame(const RunOptions& options, bool start_is_measured) {
+  if (start_is_measured && options.goal) return Task{{}, *options.goal};
   if (options.start && options.goal) return Task{*options.start, *options.goal};
   const std::filesystem::path json_file =
       std::filesystem::path(options.map).replace_extension("json");
   std::error_code ignored;
   if (!std::filesystem::exists(json_file, ignored)) {
-    const std::string missing = options.start ? "no goal: give --goal X,Y,YAW"
+    const std::string missing = options.start || start_is_measured ? "no goal: give --goal X,Y,YAW"
                                 : options.goal
                                     ? "no start: give --start X,Y,YAW"
                                     : "no start and goal: give --start X,Y,YAW and --goal X,Y,YAW";
@@ -59,15 +60,22 @@ Pose2 map_from_local(const Pose2& pose_local, const TerrainMap& terrain) {
   return {pose_local.x_m + origin.x(), pose_local.y_m + origin.y(), pose_local.yaw_rad};
 }
 
-Result<Scenario> load_scenario(const RunOptions& options) {
+Result<Scenario> load_scenario(const RunOptions& options, const MeasureStart& measure_start) {
   Result<Raster> raster = read_raster(options.map);
   if (!raster) return tl::unexpected(raster.error());
-  const Result<Task> task_map = task_in_map_frame(options);
+  Result<Task> task_map = task_in_map_frame(options, measure_start != nullptr);
   if (!task_map) return tl::unexpected(task_map.error());
   Result<TerrainMap> terrain =
       TerrainMap::build(std::move(raster->elevation), {}, raster->map_origin_m);
   if (!terrain) {
     return fail(terrain.error().code, options.map.string() + ": " + terrain.error().message);
+  }
+  Result<MachineModel> machine = load_machine(options.machine);
+  if (!machine) return tl::unexpected(machine.error());
+  if (measure_start) {
+    const Result<Pose2> measured = measure_start(*terrain, *machine);
+    if (!measured) return tl::unexpected(measured.error());
+    task_map->start = map_from_local(*measured, *terrain);
   }
   for (const auto& [name, pose] : {std::pair{"start", task_map->start}, {"goal", task_map->goal}}) {
     if (const auto on_map = check_on_map(name, pose, *terrain); !on_map) {
@@ -83,8 +91,6 @@ Result<Scenario> load_scenario(const RunOptions& options) {
         ErrorCode::kBadInput,
         "start and goal are the same pose (to 1 cm and 0.01 rad): there is nothing to drive");
   }
-  Result<MachineModel> machine = load_machine(options.machine);
-  if (!machine) return tl::unexpected(machine.error());
   const Task task{local_from_map(task_map->start, *terrain),
                   local_from_map(task_map->goal, *terrain)};
   return Scenario{std::move(*terrain), std::move(*machine), task};

@@ -60,7 +60,7 @@ class Timeline {
       for (std::size_t k = 0; k < samples.size();) {
         // One rectangle per unbroken contact.
         std::size_t end = k;
-        while (end < samples.size() && samples[end].wheel_load_n[limb] > kContactLoadN) ++end;
+        while (end < samples.size() && samples[end].contacts[limb]) ++end;
         if (end > k) {
           const double from = x(samples[k].t_s);
           const double to = x(end < samples.size() ? samples[end].t_s : samples.back().t_s);
