@@ -36,8 +36,7 @@ void ZoneController::update_spool(int i, bool active, double asked, double measu
 
 void ZoneController::update_wheel(int i, bool active, double asked, double position,
                                   double rate) noexcept {
-  const double max_change =
-      settings_.wheel_ramp_factor * limits_[i].max_acceleration * settings_.period_s;
+  const double max_change = settings_.wheel_stop_rad_s2 * settings_.period_s;
   double& drive = drive_rate_[i];
   drive = active ? asked : towards_zero(drive, max_change);
   const bool rest = std::abs(drive) < settings_.wheel_rest_rad_s;

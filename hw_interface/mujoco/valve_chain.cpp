@@ -31,10 +31,10 @@ std::array<double, kMaxJoints> ValveChain::update(const std::array<double, kMaxJ
   constexpr int kRing = kMaxDeadTimePeriods + 1;
   for (int i = 0; i < num_joints_; ++i) {
     Valve& valve = valves_[i];
-    if (!released && !valve.wheel) {
-      history_[i].fill(0.0);
+    if (!released) {
       const double slower = std::abs(valve.rate) - valve.max_rate * period_s_ / kShutTime_s;
-      valve.rate = std::copysign(std::max(0.0, slower), valve.rate);
+      valve.rate = valve.wheel ? wheel_rate[i] : std::copysign(std::max(0.0, slower), valve.rate);
+      history_[i].fill(valve.wheel ? wheel_rate[i] : 0.0);
       rate[i] = valve.rate;
       continue;
     }

@@ -18,7 +18,8 @@ class ValveChain {
   /// One control period: spool openings in [-1, 1] in, joint rates out (rad/s or m/s). Entries of
   /// wheels pass through the same dead time and lag as a rate, without spool.
   ///   released  false: pilot pressure is vented and springs shut the valves, within 50 ms and
-  ///             whatever was on its way; wheels go on
+  ///             whatever was on its way; the brake valves at the wheels' motors follow their rate
+  ///             without the pilot's delay
   std::array<double, kMaxJoints> update(const std::array<double, kMaxJoints>& spool,
                                         const std::array<double, kMaxJoints>& wheel_rate,
                                         bool released = true) noexcept;

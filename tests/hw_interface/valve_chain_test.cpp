@@ -52,5 +52,37 @@ TEST(ValveChain, PassesWheelRatesThroughWithoutASpool) {
   EXPECT_NEAR(rate_after("LF_WHEEL", 0.02, 5.0), 0.02, 1e-6);
 }
 
+TEST(ValveChain, ShutsWithin50MsWhateverIsOnItsWay) {
+  ValveChain valves(m545(), kPeriod_s, kDeadBand);
+  std::array<double, kMaxJoints> opening{}, rate{};
+  opening[joint("BOOM")] = 1.0;
+  for (int i = 0; i < 300; ++i) rate = valves.update(opening, {});
+  ASSERT_GT(rate[joint("BOOM")], 0.34);
+  double before = rate[joint("BOOM")];
+  for (int i = 0; i < 5; ++i) {
+    rate = valves.update(opening, {}, false);
+    EXPECT_LT(rate[joint("BOOM")], before);
+    before = rate[joint("BOOM")];
+  }
+  EXPECT_EQ(before, 0.0);
+  // Released again: what was in the pilot lines before does not come back.
+  const Joint& boom = m545().joints[joint("BOOM")];
+  for (int i = 0; i < std::lround(boom.dead_time_s / kPeriod_s); ++i) {
+    EXPECT_EQ(valves.update(opening, {})[joint("BOOM")], 0.0);
+  }
+  EXPECT_GT(valves.update(opening, {})[joint("BOOM")], 0.0);
+}
+
+TEST(ValveChain, WhileShutWheelsFollowTheirBrakeValvesWithoutDelay) {
+  ValveChain valves(m545(), kPeriod_s, kDeadBand);
+  std::array<double, kMaxJoints> wheels{};
+  const int wheel = joint("LF_WHEEL");
+  wheels[wheel] = 0.8;
+  for (int i = 0; i < 300; ++i) valves.update({}, wheels);
+  wheels[wheel] = 0.3;
+  EXPECT_EQ(valves.update({}, wheels, false)[wheel], 0.3);
+  EXPECT_NEAR(valves.update({}, wheels)[wheel], 0.3, 1e-12) << "0.8 is forgotten";
+}
+
 }  // namespace
 }  // namespace wex

@@ -26,17 +26,20 @@ class FakePlant final : public Plant {
   void act(const PlantInput& input) noexcept override {
     last_input = input;
     constexpr double kBlend = kPeriod_s / kLag_s;
-    release_ = input.motion_released ? 1.0 : std::max(0.0, release_ - kPeriod_s / kShut_s);
     for (int i = 0; i < machine_.num_joints(); ++i) {
       const Joint& joint = machine_.joints[i];
-      double wanted = input.wheel_rate[i];
-      if (joint.role != JointRole::kWheel) {
+      const bool wheel = joint.role == JointRole::kWheel;
+      double& rate = state_.rate[i];
+      if (wheel) {
+        rate += (input.motion_released ? kBlend : 1.0) * (input.wheel_rate[i] - rate);
+      } else if (input.motion_released) {
         const double open = std::max(0.0, std::abs(input.spool[i]) - machine_.valve_dead_band);
-        wanted =
-            std::copysign(open / (1.0 - machine_.valve_dead_band) * joint.max_rate, input.spool[i]);
+        const double wanted = open / (1.0 - machine_.valve_dead_band) * joint.max_rate;
+        rate += kBlend * (std::copysign(wanted, input.spool[i]) - rate);
+      } else {
+        const double slower = std::abs(rate) - joint.max_rate * kPeriod_s / kShut_s;
+        rate = std::copysign(std::max(0.0, slower), rate);
       }
-      flow_[i] += kBlend * (wanted - flow_[i]);
-      state_.rate[i] = joint.role == JointRole::kWheel ? flow_[i] : flow_[i] * release_;
       state_.position[i] += state_.rate[i] * kPeriod_s;
     }
   }
@@ -53,8 +56,6 @@ class FakePlant final : public Plant {
  private:
   const MachineModel& machine_;
   PlantState state_;
-  std::array<double, kMaxJoints> flow_{};
-  double release_ = 0.0;
 };
 
 }  // namespace wex::can

@@ -8,7 +8,7 @@
 namespace wex::app {
 namespace {
 
-constexpr double kMovingRate = 0.02;            ///< rad/s or m/s; oil columns give way more slowly
+constexpr double kMovingRate = 0.06;  ///< rad/s or m/s: shut cylinders swing back more slowly
 constexpr double kTravellingRate_rad_s = 0.08;  ///< 5 cm/s at the tyre
 
 }  // namespace
@@ -50,7 +50,8 @@ MachineLog::MachineLog(std::filesystem::path name, std::FILE* file, const Machin
   for (int wheel = 0; wheel < kNumWheels; ++wheel) {
     std::fprintf(file, ",load_%s", std::string(kLimbNames[wheel]).c_str());
   }
-  std::fputs(",bucket_x,bucket_y,bucket_z,accepted,rejected,moving,travelling,brakes\n", file);
+  std::fputs(",bucket_x,bucket_y,bucket_z,accepted,rejected,moving,travelling,driven,brakes\n",
+             file);
 }
 
 Result<MachineLog> MachineLog::open(const std::filesystem::path& file, const MachineModel& machine,
@@ -94,9 +95,14 @@ void MachineLog::row(std::int64_t now_ms, const can::Electronics& electronics,
     bucket.head<2>() += map_origin_m_;
   }
   std::fprintf(file, ",%.4f,%.4f,%.4f", bucket.x(), bucket.y(), bucket.z());
+  const can::PlantInput& input = electronics.plant_input();
+  bool driven = false;
+  for (int i = 0; i < num_joints; ++i) driven = driven || input.spool[i] != 0.0;
+  driven = input.motion_released && (driven || !electronics.brakes_closed());
   const can::ElectronicsCounters& counters = electronics.counters();
-  std::fprintf(file, ",%ld,%ld,%d,%d,%d\n", counters.commands_accepted,
-               counters.commands_rejected(), moving, travelling, electronics.brakes_closed());
+  std::fprintf(file, ",%ld,%ld,%d,%d,%d,%d\n", counters.commands_accepted,
+               counters.commands_rejected(), moving, travelling, driven,
+               electronics.brakes_closed());
 }
 
 Result<void> MachineLog::close() {

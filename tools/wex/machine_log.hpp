@@ -19,7 +19,10 @@ namespace wex::app {
 ///   load_LF .. load_RH       vertical wheel loads [N]
 ///   bucket_x, _y, _z         middle of the cutting edge [m]; NaN without arm
 ///   accepted, rejected       ZoneCommands so far
-///   moving, travelling       1 while a joint other than wheels, or a wheel, moves
+///   moving, travelling       1 while a joint other than a wheel is faster than 0.06 rad/s (m/s), a
+///                            wheel faster than 5 cm/s at the tyre; less is the swing of oil
+///                            columns
+///   driven                   1 while the electronics let a spool open or a wheel turn
 ///   brakes                   1 while all parking brakes and the swing brake are closed
 class MachineLog {
  public:

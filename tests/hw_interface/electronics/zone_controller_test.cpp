@@ -86,10 +86,10 @@ TEST_F(ZoneControllerTest, AHoldingWheelRampsDownThenLatches) {
   double before = 1.0;
   int periods = 0;
   while (hold().wheel_rate[kWheel] > 0.0) {
-    EXPECT_NEAR(before - controller_.output().wheel_rate[kWheel], 0.024, 0.012);
+    EXPECT_NEAR(before - controller_.output().wheel_rate[kWheel], 0.1, 1e-9);
     EXPECT_FALSE(controller_.output().brake[kWheel]);
     before = controller_.output().wheel_rate[kWheel];
-    ASSERT_LT(++periods, 100);
+    ASSERT_LE(++periods, 10);
   }
   EXPECT_FALSE(hold().brake[kWheel]) << "1 rad/s is too fast to brake";
   rate_[kWheel] = 0.05;
