@@ -1,6 +1,5 @@
 #include "hw_interface/socketcan/frame_fields.hpp"
 
-#include <algorithm>
 #include <limits>
 
 #include "hw_interface/socketcan/protection.hpp"
@@ -15,21 +14,6 @@ CodecError range_error(const SignalRow& signal) noexcept {
 }
 
 }  // namespace
-
-const MessageRow* row_of(std::uint32_t id) noexcept {
-  const auto& rows = generated::kMessages;
-  const auto found =
-      std::lower_bound(rows.begin(), rows.end(), id,
-                       [](const MessageRow& row, std::uint32_t wanted) { return row.id < wanted; });
-  return found != rows.end() && found->id == id ? &*found : nullptr;
-}
-
-const MessageRow* row_of(MessageKind kind, int zone) noexcept {
-  for (const MessageRow& row : generated::kMessages) {
-    if (row.kind == kind && row.zone == zone) return &row;
-  }
-  return nullptr;
-}
 
 std::uint16_t protection_crc(const MessageRow& row, const std::uint8_t* payload,
                              std::uint32_t session) noexcept {

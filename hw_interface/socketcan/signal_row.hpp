@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -46,21 +44,10 @@ struct MessageRow {
 };
 
 /// Nearest raw number of a physical value. errors: kNotFinite, kOutOfRange
-[[nodiscard]] inline Result<std::int64_t, CodecError> quantize(const SignalRow& signal,
-                                                               double value) noexcept {
-  if (!std::isfinite(value)) return tl::unexpected(CodecError::kNotFinite);
-  if (value < signal.minimum || value > signal.maximum) {
-    return tl::unexpected(CodecError::kOutOfRange);
-  }
-  const std::int64_t raw = std::llround(value * signal.denominator / signal.numerator);
-  // The generator has checked that the ranges agree; a table gone wrong must not wrap all the same.
-  if (raw < signal.raw_min || raw > signal.raw_max) return tl::unexpected(CodecError::kOutOfRange);
-  return raw;
-}
-
-[[nodiscard]] inline double physical(const SignalRow& signal, std::int64_t raw) noexcept {
-  return static_cast<double>(raw) * signal.numerator / signal.denominator;
-}
+[[nodiscard]] Result<std::int64_t, CodecError> quantize(const SignalRow& signal,
+                                                        double value) noexcept;
+/// Rounded once, so that the ends of a range come back exactly as the DBC states them.
+[[nodiscard]] double physical(const SignalRow& signal, std::int64_t raw) noexcept;
 
 /// Row of an id; nullptr if there is none.
 [[nodiscard]] const MessageRow* row_of(std::uint32_t id) noexcept;

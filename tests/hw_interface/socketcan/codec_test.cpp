@@ -141,6 +141,24 @@ TEST(Codec, CountsEveryFrameAndWraps) {
   }
 }
 
+TEST(Codec, AReusedFrameKeepsNothingOfItsEarlierContent) {
+  CanFrame used;
+  used.id = 0x1FFFFFFF;
+  used.extended = used.remote = used.error = true;
+  used.length = 64;
+  used.data.fill(0xEE);
+  used.kernel_time_ns = 5;
+  SendContext context{0, 3};
+  ASSERT_TRUE(encode(HostStop{true, 4}, context, used));
+  const CanFrame fresh = encoded(HostStop{true, 4});
+  EXPECT_EQ(used.id, fresh.id);
+  EXPECT_FALSE(used.extended || used.remote || used.error);
+  EXPECT_TRUE(used.fd);
+  EXPECT_EQ(used.length, 8);
+  EXPECT_EQ(used.data, fresh.data);
+  EXPECT_EQ(used.kernel_time_ns, 0);
+}
+
 TEST(Codec, RefusesForeignFormatsBeforeItLooksAtTheContent) {
   for (auto& [name, message] : every_message()) {
     const CanFrame good = encoded(message);
