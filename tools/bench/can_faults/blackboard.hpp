@@ -39,10 +39,10 @@ class Trace {
 /// The machine after one period of 10 ms.
 struct MachineSample {
   std::int64_t time_ns = 0;
-  std::int64_t accepted_ns = 0;     ///< when the last ZoneCommand was accepted
+  std::int64_t accepted_ns = 0;  ///< when the last ZoneCommand was accepted
   can::MachineMode mode = {};
-  float fastest_joint = 0.0F;       ///< rad/s or m/s, all joints but the wheels
-  float fastest_wheel_m_s = 0.0F;   ///< at the circumference
+  float fastest_joint = 0.0F;      ///< rad/s or m/s, all joints but the wheels
+  float fastest_wheel_m_s = 0.0F;  ///< at the circumference
   std::array<float, 3> p_base_bucket_m{};
 };
 
@@ -68,7 +68,8 @@ enum class Motion : int { kNone = 0, kSteady = 1, kSine = 2 };
 
 struct Blackboard {
   // Wishes of the driver.
-  std::atomic<bool> end_host, end_machine, estop_open;
+  std::atomic<bool> end_host, end_machine;
+  std::atomic<std::int64_t> estop_open_from_ns;  ///< the hardwired chain; 0: closed
   std::atomic<int> activations;  ///< the host activates once for every increment, never by itself
   std::atomic<Motion> motion;
   std::atomic<int> muted_zone;  ///< 1 + the zone whose feedback is lost on the way; 0: none
@@ -77,7 +78,8 @@ struct Blackboard {
   // What the others say.
   std::atomic<bool> host_connected, machine_runs;
   std::atomic<int> activations_done;
-  can::BusStatistics statistics;  ///< the host's, of its last cycle
+  std::atomic<std::int64_t> estop_reported_ns;  ///< first report of an open chain; 0: none
+  can::BusStatistics statistics;                ///< the host's, of its last cycle
   std::atomic<long> host_resident_kb;
   Trace<MachineSample, 250'000> machine;  ///< 40 minutes
   Trace<HostSample, 250'000> host;

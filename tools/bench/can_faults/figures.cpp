@@ -131,7 +131,7 @@ CommandCheck check_commands(const Blackboard& board, std::int64_t begin_ns) {
   std::map<Key, Sent> sent;  // session, counter, echo and CRC make every command unique
   for (const CommandRecord& command : board.sent) {
     sent[{command.id, command.data}] = {command.time_ns, false};
-    check.sent += command.time_ns >= begin_ns;
+    check.sent += command.time_ns >= begin_ns && command.time_ns <= end_ns;
   }
   for (const CommandRecord& command : board.received) {
     if (command.time_ns > end_ns) break;

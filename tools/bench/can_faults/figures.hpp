@@ -24,9 +24,9 @@ inline constexpr float kStanding = 0.02F;
 /// p in 0..1 of the values, which are reordered; 0 if there are none.
 [[nodiscard]] double percentile(std::vector<double>& values, double p);
 
-/// When valves have shut, the oil columns let the structure swing back for that long [ms]: motion
-/// that follows a standstill within it was not driven.
-inline constexpr double kSwing_ms = 400.0;
+/// When valves have shut and while the wheels ramp down, the oil columns let the structure swing
+/// for that long [ms]: motion that follows a standstill within it was not driven.
+inline constexpr double kSwing_ms = 1500.0;
 
 /// How the machine came to stand.
 struct StopFigures {
@@ -51,10 +51,10 @@ struct StopFigures {
 /// What the machine accepted against what the host has sent, from the traces.
 struct CommandCheck {
   long sent = 0, received = 0, accepted = 0;
-  long altered = 0;        ///< accepted, but never sent like that
-  long twice = 0;          ///< accepted although accepted before
-  long old_received = 0;   ///< arrived more than 100 ms after they were sent
-  long old_accepted = 0;   ///< among the accepted ones
+  long altered = 0;       ///< accepted, but never sent like that
+  long twice = 0;         ///< accepted although accepted before
+  long old_received = 0;  ///< arrived more than 100 ms after they were sent
+  long old_accepted = 0;  ///< among the accepted ones
   double oldest_accepted_ms = 0.0;
 };
 [[nodiscard]] CommandCheck check_commands(const Blackboard& board, std::int64_t begin_ns);

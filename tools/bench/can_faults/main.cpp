@@ -21,12 +21,12 @@ struct Scenario {
 };
 
 constexpr Scenario kScenarios[] = {
-    {"T6", wex::can_faults::lose_frames},     {"T7", wex::can_faults::disturb_frames},
-    {"T8", wex::can_faults::go_bus_off},      {"T9", wex::can_faults::stall_and_recover},
-    {"T10", wex::can_faults::refuse_frames},  {"T11", wex::can_faults::flap_the_link},
-    {"T12", wex::can_faults::end_processes},  {"T13", wex::can_faults::open_the_estop},
-    {"T15", wex::can_faults::masquerade},     {"T17", wex::can_faults::lose_one_zone},
-    {"T18", wex::can_faults::soak},           {"T22", wex::can_faults::jump_the_clock},
+    {"T6", wex::can_faults::lose_frames},    {"T7", wex::can_faults::disturb_frames},
+    {"T8", wex::can_faults::go_bus_off},     {"T9", wex::can_faults::stall_and_recover},
+    {"T10", wex::can_faults::refuse_frames}, {"T11", wex::can_faults::flap_the_link},
+    {"T12", wex::can_faults::end_processes}, {"T13", wex::can_faults::open_the_estop},
+    {"T15", wex::can_faults::masquerade},    {"T17", wex::can_faults::lose_one_zone},
+    {"T18", wex::can_faults::soak},          {"T22", wex::can_faults::jump_the_clock},
 };
 
 bool wanted(const char* test, int argc, char** argv) {

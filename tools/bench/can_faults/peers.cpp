@@ -50,7 +50,9 @@ void sleep_until(std::int64_t time_ns) {
 class Observer {
  public:
   explicit Observer(const MachineModel& machine)
-      : machine_(machine), workspace_(machine.tree.make_workspace()), q_(machine.num_coordinates()) {}
+      : machine_(machine),
+        workspace_(machine.tree.make_workspace()),
+        q_(machine.num_coordinates()) {}
 
   MachineSample sample(const can::PlantState& state) {
     MachineSample sample;
@@ -64,10 +66,9 @@ class Observer {
       fastest = std::max(fastest, rate * radius);
     }
     machine_.tree.update(q_, workspace_);
-    const Eigen::Vector3f p = machine_.tree
-                                  .position(workspace_, machine_.arm->contact_body,
-                                            machine_.arm->p_body_contact)
-                                  .cast<float>();
+    const Eigen::Vector3f p =
+        machine_.tree.position(workspace_, machine_.arm->contact_body, machine_.arm->p_body_contact)
+            .cast<float>();
     sample.p_base_bucket_m = {p.x(), p.y(), p.z()};
     return sample;
   }
@@ -170,6 +171,11 @@ int run_machine(Scene& scene, const std::string& interface_name, Blackboard& boa
     if (can::kind_of(frame) == can::MessageKind::kZoneFeedback && can::zone_of(frame) == 4) {
       board.last_muted_zone_feedback_ns = clock.now_ns();
     }
+    can::EStopState estop;
+    if (can::kind_of(frame) == can::MessageKind::kEStopState && can::decode(frame, 0, estop) &&
+        estop.chain_open && board.estop_reported_ns == 0) {
+      board.estop_reported_ns = clock.now_ns();
+    }
   };
 
   Observer observer(scene.machine);
@@ -188,7 +194,8 @@ int run_machine(Scene& scene, const std::string& interface_name, Blackboard& boa
       }
       electronics.receive(clock.now_ns() / kMillisecond_ns);
     }
-    electronics.set_estop_chain(board.estop_open);
+    const std::int64_t open_ns = board.estop_open_from_ns;
+    electronics.set_estop_chain(open_ns != 0 && clock.now_ns() >= open_ns);
     electronics.tick(clock.now_ns() / kMillisecond_ns);
     MachineSample sample = observer.sample(electronics.plant_state());
     sample.time_ns = clock.now_ns();
@@ -221,8 +228,7 @@ int run_host(const Scene& scene, const std::string& interface_name, const HostOp
   can::SocketCanSettings settings;
   settings.pace = can::SocketCanSettings::Pace::kRealTime;
   settings.host.link.purge_by_link_flap = options.purge;
-  auto opened =
-      can::SocketCanMachine::open_on(*port, clock, scene.machine, {0.0, 0.0}, settings);
+  auto opened = can::SocketCanMachine::open_on(*port, clock, scene.machine, {0.0, 0.0}, settings);
   if (!opened) return complain("host", opened.error());
   can::SocketCanMachine& machine = **opened;
   const int turn = scene.machine.arm->coordinates[0] - kNumBaseCoordinates;

@@ -68,7 +68,8 @@ class SlcanAdapter {
 
  private:
   void report() {
-    constexpr char kBusOff[] = "sb000255\r";  // state bus-off, receive errors 0, transmit errors 255
+    constexpr char kBusOff[] =
+        "sb000255\r";  // state bus-off, receive errors 0, transmit errors 255
     if (write(terminal_, kBusOff, sizeof(kBusOff) - 1) > 0) ++reports_;
   }
   /// The driver opens the channel ("O") when the link comes up: a bus that is still broken takes
@@ -134,12 +135,11 @@ void imitate(Scene& scene, const char* what, can::MessageKind kind) {
   const bool host_faults = rig.lifecycle() == Lifecycle::kFault;
   const bool machine_stands = rig.mode() != can::MachineMode::kEnabled;
   const CommandCheck check = check_commands(rig.board(), begin_ns);
-  print_figure("T15", what,
-               text("host in fault: %s, machine leaves enabled: %s, imitations accepted %ld",
-                    host_faults ? "yes" : "no", machine_stands ? "yes" : "no",
-                    check.altered + check.twice),
-               "fault, none accepted",
-               host_faults && machine_stands && check.altered + check.twice == 0);
+  print_figure(
+      "T15", what,
+      text("host in fault: %s, machine leaves enabled: %s, imitations accepted %ld",
+           host_faults ? "yes" : "no", machine_stands ? "yes" : "no", check.altered + check.twice),
+      "fault, none accepted", host_faults && machine_stands && check.altered + check.twice == 0);
 }
 
 void forge_errors(Scene& scene) {
@@ -155,9 +155,9 @@ void forge_errors(Scene& scene) {
   lie();  // machine ready, nobody asked for motion
   const bool enabled = ever(rig.board(), can::MachineMode::kEnabled, begin_ns);
   rig.drive();
-  rig.board().estop_open = true;
+  rig.board().estop_open_from_ns = now_ns();
   sleep_s(0.1);
-  rig.board().estop_open = false;
+  rig.board().estop_open_from_ns = 0;
   const std::int64_t stopped_ns = now_ns();
   lie();  // stopped: errors must not undo it
   const bool resumed = ever(rig.board(), can::MachineMode::kEnabled, stopped_ns);
@@ -169,7 +169,8 @@ void forge_errors(Scene& scene) {
 }  // namespace
 
 void go_bus_off(Scene& scene, bool full) {
-  for (const double broken_s : full ? std::vector<double>{0.3, 3.0, 10.0} : std::vector<double>{1.0}) {
+  for (const double broken_s :
+       full ? std::vector<double>{0.3, 3.0, 10.0} : std::vector<double>{1.0}) {
     SlcanAdapter adapter;
     HostOptions options;
     options.error_interface = adapter.interface_name();
@@ -191,17 +192,16 @@ void go_bus_off(Scene& scene, bool full) {
     const double hold_ms = 1e-6 * static_cast<double>(hold_ns - begin_ns);
     const int resumed = entries(rig.board(), can::MachineMode::kEnabled, hold_ns);
     const bool lasts = broken_s < 0.5;  // a short one may end within the session
-    print_figure("T8", text("controller bus-off for %.1f s (slcan's error states)", broken_s),
-                 text("%d bus-off reports, %ld error frames at the host; machine holds after %.0f "
-                      "ms, joints stand %.0f ms after the last command; %ld restarts; enabled by itself "
-                      "%d times",
-                      adapter.reports(), rig.board().statistics.error_frames, hold_ms,
-                      figures.joints_ms,
-                      rig.board().statistics.purges, resumed),
-                 lasts ? "hold <= 75 ms" : "hold <= 75 ms, never enabled by itself",
-                 adapter.reports() > 0 && rig.board().statistics.error_frames > 0 &&
-                     hold_ns > begin_ns && hold_ms <= 75.0 && resumed == 0 &&
-                     figures.joints_ms <= kMaxMotion_ms);
+    print_figure(
+        "T8", text("controller bus-off for %.1f s (slcan's error states)", broken_s),
+        text("%d bus-off reports, %ld error frames at the host; machine holds after %.0f "
+             "ms, joints stand %.0f ms after the last command; %ld restarts; enabled by itself "
+             "%d times",
+             adapter.reports(), rig.board().statistics.error_frames, hold_ms, figures.joints_ms,
+             rig.board().statistics.purges, resumed),
+        lasts ? "hold <= 75 ms" : "hold <= 75 ms, never enabled by itself",
+        adapter.reports() > 0 && rig.board().statistics.error_frames > 0 && hold_ns > begin_ns &&
+            hold_ms <= 75.0 && resumed == 0 && figures.joints_ms <= kMaxMotion_ms);
   }
 }
 
@@ -240,12 +240,12 @@ void lose_one_zone(Scene& scene, bool full) {
     }
     stale_ms.push_back(stale);
   }
-  print_figure("T17", text("one zone's feedback lost for 45 ms, %d times", times),
-               text("the planner sees STALE after p50 %.0f, min %.0f, max %.0f ms",
-                    percentile(stale_ms, 0.5), percentile(stale_ms, 0.0),
-                    percentile(stale_ms, 1.0)),
-               "30 ms +- a period (+2)",
-               percentile(stale_ms, 0.0) >= 20.0 && percentile(stale_ms, 1.0) <= 42.0);
+  print_figure(
+      "T17", text("one zone's feedback lost for 45 ms, %d times", times),
+      text("the planner sees STALE after p50 %.0f, min %.0f, max %.0f ms",
+           percentile(stale_ms, 0.5), percentile(stale_ms, 0.0), percentile(stale_ms, 1.0)),
+      "30 ms +- a period (+2)",
+      percentile(stale_ms, 0.0) >= 20.0 && percentile(stale_ms, 1.0) <= 42.0);
 }
 
 }  // namespace wex::can_faults

@@ -48,17 +48,16 @@ void stall(Scene& scene, bool purge) {
   const CommandCheck check = check_commands(rig.board(), begin_ns);
   const double motion_ms = longest_motion_without_command_ms(rig.board(), begin_ns);
   const bool resumed = ever(rig.board(), can::MachineMode::kEnabled, recovered_ns);
-  print_figure("T9",
-               text("stall of 2 s, then recovery; %s", purge ? "purge by link flap" : "no purge"),
-               text("%ld old frames on the wire, %ld of them accepted; moved %.0f ms after the last "
-                    "command; host: %ld sends refused, %ld purges; enabled again by itself: %s",
-                    check.old_received, check.old_accepted + check.altered, motion_ms,
-                    rig.board().statistics.not_taken, rig.board().statistics.purges,
-                    resumed ? "yes" : "no"),
-               purge ? "<= 5 old, 0 accepted, <= 150 ms" : "0 accepted, <= 150 ms",
-               check.old_accepted == 0 && check.altered == 0 && check.twice == 0 &&
-                   (check.old_received <= 5 || !purge) && motion_ms <= kMaxMotion_ms &&
-                   rig.board().statistics.not_taken > 0);
+  print_figure(
+      "T9", text("stall of 2 s, then recovery; %s", purge ? "purge by link flap" : "no purge"),
+      text("%ld old frames on the wire, %ld of them accepted; moved %.0f ms after the last "
+           "command; host: %ld sends refused, %ld purges; enabled again by itself: %s",
+           check.old_received, check.old_accepted + check.altered, motion_ms,
+           rig.board().statistics.not_taken, rig.board().statistics.purges, resumed ? "yes" : "no"),
+      purge ? "<= 5 old, 0 accepted, <= 150 ms" : "0 accepted, <= 150 ms",
+      check.old_accepted == 0 && check.altered == 0 && check.twice == 0 &&
+          (check.old_received <= 5 || !purge) && motion_ms <= kMaxMotion_ms &&
+          rig.board().statistics.not_taken > 0);
 }
 
 }  // namespace
@@ -139,7 +138,8 @@ void refuse_frames(Scene& scene, bool full) {
     for (std::size_t i = 1; i < rig.board().host.size(); ++i) {
       const HostSample& sample = rig.board().host[i];
       if (rig.board().host[i - 1].time_ns < begin_ns) continue;
-      cycles.push_back(1e-6 * static_cast<double>(sample.time_ns - rig.board().host[i - 1].time_ns));
+      cycles.push_back(1e-6 *
+                       static_cast<double>(sample.time_ns - rig.board().host[i - 1].time_ns));
     }
     return cycles;
   };
@@ -155,14 +155,14 @@ void refuse_frames(Scene& scene, bool full) {
   const double healthy_p99_ms = percentile(healthy_ms, 0.99);
   const double storm_p99_ms = percentile(storm_ms, 0.99);
   const double motion_ms = longest_motion_without_command_ms(rig.board(), begin_ns);
-  print_figure("T10", text("queue full for %.0f s (ENOBUFS)", duration_s),
-               text("%ld sends refused; cycle p99 %.1f ms (healthy %.1f); memory +%ld kB; moved "
-                    "%.0f ms after the last command",
-                    rig.board().statistics.not_taken, storm_p99_ms, healthy_p99_ms, growth_kb,
-                    motion_ms),
-               "cycle p99 <= 25 ms, <= 500 kB, <= 150 ms",
-               rig.board().statistics.not_taken > 50 && storm_p99_ms <= 25.0 && growth_kb <= 500 &&
-                   motion_ms <= kMaxMotion_ms);
+  print_figure(
+      "T10", text("queue full for %.0f s (ENOBUFS)", duration_s),
+      text("%ld sends refused; cycle p99 %.1f ms (healthy %.1f); memory +%ld kB; moved "
+           "%.0f ms after the last command",
+           rig.board().statistics.not_taken, storm_p99_ms, healthy_p99_ms, growth_kb, motion_ms),
+      "cycle p99 <= 25 ms, <= 500 kB, <= 150 ms",
+      rig.board().statistics.not_taken > 50 && storm_p99_ms <= 25.0 && growth_kb <= 500 &&
+          motion_ms <= kMaxMotion_ms);
 }
 
 }  // namespace wex::can_faults

@@ -74,7 +74,8 @@ class ControllerPort final : public can::FramePort {
   [[nodiscard]] std::uint32_t dropped() const noexcept override { return data_.dropped(); }
 
  private:
-  static constexpr std::uint32_t kBusOff = 0x40, kRestarted = 0x100;  // classes of linux/can/error.h
+  static constexpr std::uint32_t kBusOff = 0x40,
+                                 kRestarted = 0x100;  // classes of linux/can/error.h
   can::FramePort &data_, &errors_;
   bool bus_off_ = false;
 };

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace wex {
+
+/// How what a program prints becomes rows of the table.
+enum class CanBenchOutput {
+  kFigures,     ///< FIGURE lines (tools/bench/can_faults/figures.hpp), one row each
+  kGoogleTest,  ///< one row: its own lines, or how many tests passed
+  kScript       ///< one row: its last line, judged by the exit code
+};
+
+/// One program of the bench.
+struct CanBenchPart {
+  std::string test;  ///< "T4"; of kFigures: all that it must speak of, "T6 T7"
+  std::string what, gate;
+  CanBenchOutput output = CanBenchOutput::kGoogleTest;
+  std::vector<std::string> command;
+  std::vector<std::string> environment;  ///< NAME=value
+  int timeout_s = 300;
+};
+
+/// What the bench consists of. build: folder with the tests' programs below; source: of the tree.
+[[nodiscard]] std::vector<CanBenchPart> can_bench_parts(bool full,
+                                                        const std::filesystem::path& build,
+                                                        const std::filesystem::path& source);
+
+}  // namespace wex
