@@ -195,6 +195,12 @@ void JointLoop::update_wheels(const JointCommand* command, const JointMeasuremen
   }
 }
 
+void JointLoop::stand_still() noexcept {
+  previous_rate_.fill(0.0);
+  expected_rate_.fill(0.0);
+  drive_lag_rad_ = 0.0;
+}
+
 ActuatorCommand JointLoop::update(const JointCommand* command,
                                   const JointMeasurement& measured) noexcept {
   balance_.update(measured.position, measured.effort, settings_.load_balance && command != nullptr);

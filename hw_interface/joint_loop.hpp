@@ -48,6 +48,10 @@ class JointLoop {
   /// One control period. command == nullptr: all motion ends and the machine holds.
   ActuatorCommand update(const JointCommand* command, const JointMeasurement& measured) noexcept;
 
+  /// For the periods in which somebody else holds the machine (its electronics, a brake): the ramps
+  /// end at once, so that the next motion begins at rest. update() follows as ever.
+  void stand_still() noexcept;
+
   /// Times all wheel drives were stopped because one of them stalled.
   [[nodiscard]] long stall_stops() const noexcept { return stall_stops_; }
   [[nodiscard]] bool stalled() const noexcept { return stalled_wheel_ >= 0; }

@@ -76,6 +76,7 @@ struct ReplayMachine::Impl {
     const bool enabled = feedback.mode() == can::MachineMode::kEnabled;
     const bool live = has_command && enabled;
     const JointMeasurement measured = feedback.measurement();
+    if (!enabled) loop.stand_still();
     rates = loop.update(live ? &command : nullptr, measured).rate;
     if (enabled) {
       limits.limit_rates(rates, measured.position);

@@ -239,9 +239,11 @@ HostOutputs outputs_of(const HostState& state, const HostInputs& in) noexcept {
     case HostPhase::kInactive:
     case HostPhase::kFault:
     case HostPhase::kEStop:
-      // A session that the machine still believes in (ours has ended) is to end there too.
+      // A session that the machine still believes in (ours has ended) is to end there too; it
+      // listens to heartbeats of that session only.
       if (in.session != 0 || in.mode == MachineMode::kEnabling) {
         out.request = HostRequest::kDisable;
+        out.session = in.session;
       }
       return out;
     case HostPhase::kAsking:

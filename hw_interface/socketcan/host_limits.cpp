@@ -55,14 +55,14 @@ double HostLimits::largest_rate(int joint, double rate, double position) const n
   const double way = rate > 0.0 ? limits.upper - position : position - limits.lower;
   const double braking = std::sqrt(2.0 * limits.max_acceleration * std::max(0.0, way));
   const double at_once = wheel ? settings_.wheel_change_rad_s : 0.0;
-  const double acceleration = settings_.acceleration_factor * limits.max_acceleration;
+  const double per_period = limits.max_acceleration * settings_.period_s;
   const double same_way = std::max(0.0, sign * sent_[head_][joint]);
   double slowest = same_way;
   for (const auto& cycle : sent_) {
     slowest = std::min(slowest, std::max(0.0, sign * cycle[joint]));
   }
-  const double per_cycle = same_way + acceleration * settings_.period_s + at_once;
-  const double per_window = slowest + acceleration * kWindowCycles * settings_.period_s + at_once;
+  const double per_cycle = same_way + settings_.cycle_acceleration_factor * per_period + at_once;
+  const double per_window = slowest + kWindowCycles * per_period + at_once + settings_.tolerance;
   return std::min({limits.max_rate, braking, per_cycle, per_window});
 }
 

@@ -10,6 +10,7 @@ namespace wex::can {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr double kWellAfterPurges = 3.0;  ///< periods of purging without trouble
 
 std::int64_t nanoseconds(double duration_s) noexcept {
   return static_cast<std::int64_t>(1e9 * duration_s);
@@ -115,8 +116,13 @@ void HostLink::on_lost(std::int64_t now_ns) noexcept {
 }
 
 void HostLink::receive(HostFeedback& feedback, std::int64_t now_ns) noexcept {
-  if (!usable_) return;
   CanFrame frame;
+  if (!usable_) {
+    // Nothing counts before the port is opened anew; left unread, it would end every wait at once.
+    for (int i = 0; i < kMaxFramesAtOnce && port_->receive(frame) == SocketStatus::kOk; ++i) {
+    }
+    return;
+  }
   for (int i = 0; i < kMaxFramesAtOnce; ++i) {
     const SocketStatus status = port_->receive(frame);
     if (status == SocketStatus::kWouldBlock) break;
@@ -183,10 +189,11 @@ void HostLink::end_cycle(std::int64_t now_ns) noexcept {
   const bool was_stalled = stalled();
   blocked_cycles_ = blocked_ ? blocked_cycles_ + 1 : 0;
   blocked_ = false;
-  if (stalled()) {
-    if (!was_stalled) ++statistics_.stalls;
-    try_purge(now_ns);
-  } else if (usable_ && !lost_ && !bus_off_reported(now_ns)) {
+  if (stalled() && !was_stalled) ++statistics_.stalls;
+  if (stalled()) try_purge(now_ns);
+  // Right after a purge the queue takes frames even if the bus does not: that is not "well again".
+  if (stalled() || lost_ || bus_off_reported(now_ns)) ill_ns_ = now_ns;
+  if (now_ns - ill_ns_ > nanoseconds(kWellAfterPurges * settings_.purge_every_s)) {
     purges_in_a_row_ = 0;
   }
   if (usable_ || now_ns < reopen_at_ns_) return;

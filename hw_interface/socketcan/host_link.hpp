@@ -81,7 +81,7 @@ class HostLink {
   int blocked_cycles_ = 0, purges_in_a_row_ = 0;
   std::int64_t reopen_at_ns_ = 0, purged_ns_ = kNever_ns;
   double backoff_s_ = 0.0;
-  std::int64_t bus_off_ns_ = kNever_ns, trouble_ns_ = kNever_ns;
+  std::int64_t bus_off_ns_ = kNever_ns, trouble_ns_ = kNever_ns, ill_ns_ = kNever_ns;
   std::uint32_t dropped_ = 0;
   std::int64_t overflow_ns_ = kNever_ns, overflow_before_ns_ = kNever_ns;
 

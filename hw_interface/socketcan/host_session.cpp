@@ -113,6 +113,7 @@ void HostSession::cycle(std::int64_t now_ns) noexcept {
   }
   const bool live = out.live && has_command_;
   const JointMeasurement measured = feedback_.measurement();
+  if (!out.live) loop_.stand_still();  // the machine holds by itself and starts from rest
   ActuatorCommand wanted = loop_.update(live ? &command_ : nullptr, measured);
   if (out.silent) {
     limits_.stand_still();

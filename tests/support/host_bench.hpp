@@ -129,7 +129,10 @@ class HostBench {
     ASSERT_TRUE(activated) << activated.error().message;
     ASSERT_EQ(far.mode(), MachineMode::kEnabled);
   }
-  void wait(double duration_s) { host->wait_until(host->read().t_s + duration_s); }
+  void wait(double duration_s) {
+    const MachineState state = host->read();
+    host->wait_until(state.t_s + state.age_s + duration_s);
+  }
 
   int wheel(int leg) const { return bench_machine().legs[leg].wheel - kNumBaseCoordinates; }
   JointCommand drive_command(double wheel_rate_rad_s, double valid_s = 100.0) {
@@ -159,10 +162,7 @@ class HostBench {
     return 1e-3 * static_cast<double>(far.now_ms() - begin_ms);
   }
   /// One period of whatever clock the host has.
-  void wait_one() {
-    const MachineState state = host->read();
-    host->wait_until(state.t_s + state.age_s + 0.01);
-  }
+  void wait_one() { wait(0.01); }
   void operator_does(OperatorAction action) {
     CanFrame frame;
     ASSERT_TRUE(encode(OperatorCommand{action}, operator_context, frame));

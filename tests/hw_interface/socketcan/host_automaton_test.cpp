@@ -281,8 +281,9 @@ TEST_F(HostAutomaton, StaleFeedbackHoldsAt50MsAndFaultsAt200) {
   EXPECT_EQ(state_.cause, HostCause::kLostFeedback);
   EXPECT_FALSE(out().send_commands);
   EXPECT_TRUE(out().send_stop);
-  EXPECT_EQ(out().session, 0U);
+  EXPECT_EQ(state_.session, 0U);
   EXPECT_EQ(out().request, HostRequest::kDisable);
+  EXPECT_EQ(out().session, 0x5E55U) << "the machine listens to no other";
 }
 
 TEST_F(HostAutomaton, HoldIsLeftAfterTenNeutralCommandsWithoutACause) {
@@ -510,7 +511,7 @@ TEST_F(HostAutomaton, TheEStopIsLatchedAndWinsOverEverything) {
     EXPECT_EQ(state_.phase, HostPhase::kEStop);
     EXPECT_EQ(state_.cause, HostCause::kEStopOpen);
     EXPECT_FALSE(out().send_commands);
-    EXPECT_EQ(out().session, 0U);
+    EXPECT_EQ(state_.session, 0U);
     in_.operator_reset = true;
     steps(20);
     EXPECT_EQ(state_.phase, HostPhase::kEStop) << "still open";
