@@ -35,7 +35,7 @@ SlotRole role_of(const MachineModel& machine, int joint) {
 }  // namespace
 
 long ElectronicsCounters::commands_rejected() const noexcept {
-  long sum = other_session + not_enabled + sequence_errors + stale + crc_errors;
+  long sum = other_session + not_enabled + sequence_errors + crc_errors;
   for (const long count : limits) sum += count;
   return sum;
 }

@@ -42,7 +42,6 @@ struct ElectronicsCounters {
   long other_session = 0;        ///< ZoneCommands of the session before
   long not_enabled = 0;          ///< ZoneCommands outside a session
   long sequence_errors = 0;      ///< repeated, reordered or after a gap
-  long stale = 0;                ///< ZoneCommands computed from old feedback
   std::array<long, 6> limits{};  ///< by LimitVerdict
   [[nodiscard]] long commands_rejected() const noexcept;
 };

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <random>
 
+#include "hw_interface/socketcan/frame_fields.hpp"
 #include "tests/hw_interface/electronics/electronics_bench.hpp"
 
 namespace wex::can {
@@ -357,6 +358,79 @@ TEST_F(ElectronicsTest, CorruptedFramesAreDroppedAndTheFourthIsAFault) {
   EXPECT_EQ(counters().crc_errors, 4);
   EXPECT_EQ(bench_.mode(), MachineMode::kFault);
   EXPECT_EQ(bench_.status.fault_bits, kFaultCrcErrors);
+}
+
+TEST_F(ElectronicsTest, IntactCommandsOutsideTheDbcsRangeAreAFaultToo) {
+  bench_.enable();
+  // What no codec of ours would send: 3 rad/s for a hip, with a right CRC.
+  bench_.on_the_wire = [&](CanFrame& frame) {
+    if (kind_of(frame) != MessageKind::kZoneCommand || zone_of(frame) != kLeftFront) return true;
+    constexpr std::int16_t kRaw = 30'000;
+    frame.data[8] = kRaw & 0xFF;
+    frame.data[9] = kRaw >> 8;
+    const MessageRow* row = row_of(MessageKind::kZoneCommand, kLeftFront);
+    const std::uint16_t crc = protection_crc(*row, frame.data.data(), bench_.status.session);
+    frame.data[0] = static_cast<std::uint8_t>(crc & 0xFF);
+    frame.data[1] = static_cast<std::uint8_t>(crc >> 8);
+    return true;
+  };
+  bench_.steps(3);
+  EXPECT_EQ(counters().limits[static_cast<std::size_t>(LimitVerdict::kRate)], 3);
+  EXPECT_EQ(counters().crc_errors, 0);
+  EXPECT_EQ(bench_.mode(), MachineMode::kFault);
+  EXPECT_EQ(bench_.status.fault_bits, kFaultRangeRejects);
+  EXPECT_EQ(counters().commands_rejected() - counters().not_enabled - counters().other_session, 3);
+}
+
+TEST_F(ElectronicsTest, CorruptedOrRepeatedHeartbeatsAndOperatorFramesAreNotUsed) {
+  const CanFrame heartbeat = bench_.frame_of(bench_.heartbeat, bench_.heartbeat_context);
+  bench_.send_heartbeat = bench_.send_commands = false;
+  bench_.step();
+  ASSERT_EQ(bench_.mode(), MachineMode::kInit);
+  CanFrame corrupted = heartbeat;
+  corrupted.data[10] ^= 1;
+  bench_.port.inbox.push_back(corrupted);
+  bench_.step();
+  EXPECT_EQ(bench_.mode(), MachineMode::kInit);
+  EXPECT_EQ(counters().crc_errors, 1);
+  for (int i = 0; i < 12; ++i) {
+    bench_.port.inbox.push_back(heartbeat);  // the first is good, the others repeat it
+    bench_.step();
+  }
+  EXPECT_EQ(bench_.mode(), MachineMode::kInit) << "a repetition does not keep the host alive";
+  EXPECT_EQ(counters().sequence_errors, 11);
+
+  CanFrame stop = bench_.frame_of(OperatorCommand{OperatorAction::kStop}, bench_.operator_context);
+  stop.data[3] ^= 1;
+  bench_.port.inbox.push_back(stop);
+  bench_.step();
+  EXPECT_NE(bench_.mode(), MachineMode::kEStop);
+  EXPECT_EQ(counters().crc_errors, 2);
+}
+
+TEST_F(ElectronicsTest, AValueTheCodecRefusesIsNotSent) {
+  bench_.plant.state().base[kBaseZ] = 20'000.0;  // the DBC ends at 10 km
+  bench_.steps(2);
+  EXPECT_EQ(sent(MessageKind::kBasePose), 0);
+  EXPECT_EQ(sent(MessageKind::kZoneFeedback), kNumZones);
+  EXPECT_GT(bench_.electronics->publisher().frames_not_taken(), 0);
+  bench_.plant.state().base[kBaseZ] = std::numeric_limits<double>::quiet_NaN();
+  bench_.step();
+  EXPECT_EQ(sent(MessageKind::kBasePose), 1) << "as invalid";
+}
+
+TEST(RandomSources, TheKernelsDoesNotRepeatItselfAndTheSeededOneDoes) {
+  SystemRandom system;
+  SeededRandom first(5), again(5), other(6);
+  int equal = 0, seeded_equal = 0;
+  for (int i = 0; i < 1000; ++i) {
+    if (system.next() == system.next()) ++equal;
+    const std::uint32_t value = first.next();
+    EXPECT_EQ(value, again.next());
+    if (value == other.next()) ++seeded_equal;
+  }
+  EXPECT_LE(equal, 1);
+  EXPECT_LE(seeded_equal, 1);
 }
 
 // T15: somebody else sends what only the machine may send.
