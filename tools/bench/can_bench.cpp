@@ -35,9 +35,9 @@ struct Ran {
 
 Ran run(const CanBenchPart& part) {
   std::string line = "env";
-  for (const std::string& variable : part.environment) line += " " + for_shell(variable);
-  line += " timeout -k 10 " + std::to_string(part.timeout_s);
-  for (const std::string& word : part.command) line += " " + for_shell(word);
+  for (const std::string& variable : part.environment) line.append(" ").append(for_shell(variable));
+  line.append(" timeout -k 10 ").append(std::to_string(part.timeout_s));
+  for (const std::string& word : part.command) line.append(" ").append(for_shell(word));
   line += " 2>&1 </dev/null";
   Ran ran;
   std::FILE* pipe = popen(line.c_str(), "r");
