@@ -11,7 +11,11 @@ namespace wex {
 namespace {
 
 constexpr double kTimeTolerance_s = 1e-9;
-constexpr double kLimitTolerance = 1e-6;  ///< rad/s, rad (m/s, m): rounding of a planner
+constexpr double kLimitTolerance = 1e-6;      ///< rad/s, rad (m/s, m): rounding of a planner
+constexpr double kHardRateFactor = 2.0;       ///< of the joint's largest rate, as on the bus
+constexpr double kHardPositionMargin = 0.25;  ///< rad or m beyond an end stop, likewise
+constexpr double kStandingRate = 0.02;        ///< rad/s or m/s
+constexpr double kStopPatience_s = 2.0;
 
 JointLoopSettings joint_loop_settings(const MachineModel& machine,
                                       const SimulationSettings& settings) {
@@ -44,6 +48,26 @@ struct SimulatedMachine::Impl {
       wanted = loop.update(live ? &command : nullptr, plant->measure());
     }
     plant->tick(wanted);
+  }
+
+  /// Rates or targets that no planner's slip explains.
+  bool far_beyond_limits(const JointCommand& wanted) const noexcept {
+    for (int i = 0; i < machine.num_joints(); ++i) {
+      const Joint& joint = machine.joints[i];
+      const double target = wanted.position_target[i];
+      if (std::abs(wanted.rate[i]) > kHardRateFactor * joint.max_rate ||
+          (wanted.has_position_target[i] && (target < joint.lower - kHardPositionMargin ||
+                                             target > joint.upper + kHardPositionMargin))) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  bool stands() const noexcept {
+    const JointMeasurement measured = plant->measure();
+    return std::all_of(measured.rate.begin(), measured.rate.begin() + machine.num_joints(),
+                       [](double rate) { return std::abs(rate) < kStandingRate; });
   }
 
   /// Brings the command into the joints' limits; true if it was not.
@@ -83,7 +107,7 @@ struct SimulatedMachine::Impl {
   JointLoop loop;
 
   JointCommand command;
-  bool has_command = false, stopped = false;
+  bool has_command = false, stopped = false, active = true;
   MachineHealth health;
   MachineState last_state;
   double cpu_time_s = 0.0;
@@ -115,6 +139,8 @@ MachineState SimulatedMachine::read() noexcept {
   MachineState& last = impl_->last_state;
   if (!impl_->plant->broken()) last = impl_->state();
   last.age_s = impl_->plant->time_s() - last.t_s;
+  last.joint_age_s.fill(last.age_s);
+  if (impl_->plant->broken()) last.joint_quality.fill(SignalQuality::kInvalid);
   return last;
 }
 
@@ -128,10 +154,11 @@ WriteOutcome SimulatedMachine::write(const JointCommand& command) noexcept {
       finite = finite && std::isfinite(command.rate[i]) &&
                (!command.has_position_target[i] || std::isfinite(command.position_target[i]));
     }
-    if (!finite) {
+    if (!finite || impl_->far_beyond_limits(command)) {
       impl_->has_command = false;
-      return WriteOutcome::kRejectedNotFinite;
+      return finite ? WriteOutcome::kRejectedRange : WriteOutcome::kRejectedNotFinite;
     }
+    if (!impl_->active) return WriteOutcome::kRejectedNotActive;
     if (command.valid_until_s < impl_->plant->time_s()) return WriteOutcome::kRejectedExpired;
     impl_->command = command;
     impl_->has_command = true;
@@ -163,6 +190,30 @@ void SimulatedMachine::wait_until(double t_s) {
   const double start_s = thread_cpu_time_s();
   while (impl_->plant->time_s() < t_s - kTimeTolerance_s) impl_->advance();
   impl_->cpu_time_s += thread_cpu_time_s() - start_s;
+}
+
+Lifecycle SimulatedMachine::lifecycle() const noexcept {
+  if (impl_->plant->broken()) return Lifecycle::kFault;
+  return impl_->active ? Lifecycle::kActive : Lifecycle::kInactive;
+}
+
+Result<void> SimulatedMachine::activate() {
+  if (impl_->plant->broken()) {
+    return fail(ErrorCode::kStoppedSafely, "the simulation's state is not finite any more");
+  }
+  if (impl_->stopped) {
+    return fail(ErrorCode::kStoppedSafely, "a stop is in force, release it first");
+  }
+  impl_->active = true;
+  return {};
+}
+
+void SimulatedMachine::deactivate() noexcept {
+  if (lifecycle() != Lifecycle::kActive) return;
+  impl_->has_command = false;
+  const double end_s = impl_->plant->time_s() + kStopPatience_s;
+  while (!impl_->stands() && impl_->plant->time_s() < end_s) impl_->advance();
+  impl_->active = false;
 }
 
 GroundTruth SimulatedMachine::ground_truth() const { return impl_->plant->ground_truth(); }

@@ -32,6 +32,10 @@ class SimulatedMachine final : public MachineIo {
   void release() noexcept override;
   MachineHealth health() const noexcept override;
   void wait_until(double t_s) override;
+  /// kActive from the start: there is nobody to protect. kFault: the state is not finite any more.
+  Lifecycle lifecycle() const noexcept override;
+  Result<void> activate() override;
+  void deactivate() noexcept override;
 
   [[nodiscard]] GroundTruth ground_truth() const;
   /// What the load balance has added to each hip flexion, by Limb; not part of read()'s positions.

@@ -32,8 +32,10 @@ std::unique_ptr<MachineIo> on_flat_ground() {
   return SimulatedMachine::create(*m545(), flat_ground(), standing_on_plane(*m545())).value();
 }
 
-INSTANTIATE_TEST_SUITE_P(SimulatedMachine, MachineIoContract,
-                         ::testing::Values(MachineIoSubject{"Simulated", on_flat_ground, m545()}),
+const MachineIoSubject kSubject{"Simulated", on_flat_ground, m545()};
+INSTANTIATE_TEST_SUITE_P(SimulatedMachine, MachineIoContract, ::testing::Values(kSubject),
+                         subject_name);
+INSTANTIATE_TEST_SUITE_P(SimulatedMachine, MachineIoMotionContract, ::testing::Values(kSubject),
                          subject_name);
 
 TEST(SimulatedMachineContract, ControlRateCallsDoNotAllocate) {

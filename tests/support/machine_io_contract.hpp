@@ -14,12 +14,14 @@
 
 // The contract every MachineIo keeps, whatever is behind it. A backend's test defines its subjects:
 //   INSTANTIATE_TEST_SUITE_P(Simulated, MachineIoContract, ::testing::Values(subject));
+// and, if commands move the machine (they do not move a replay):
+//   INSTANTIATE_TEST_SUITE_P(Simulated, MachineIoMotionContract, ::testing::Values(subject));
 
 namespace wex {
 
 struct MachineIoSubject {
   std::string name;
-  std::function<std::unique_ptr<MachineIo>()> make;  ///< standing on flat ground, holding
+  std::function<std::unique_ptr<MachineIo>()> make;  ///< standing on flat ground, active, holding
   std::shared_ptr<const MachineModel> machine;
 };
 
@@ -63,6 +65,9 @@ class MachineIoContract : public ::testing::TestWithParam<MachineIoSubject> {
   std::unique_ptr<MachineIo> io_ = GetParam().make();
 };
 
+/// Where commands move the machine.
+class MachineIoMotionContract : public MachineIoContract {};
+
 TEST_P(MachineIoContract, ReadsBackEveryJointWithTimeAndAge) {
   const MachineState before = io_->read();
   wait(5 * kTick_s);
@@ -85,7 +90,7 @@ TEST_P(MachineIoContract, WaitingForATimeThatIsPastReturnsAtOnce) {
   EXPECT_LE(io_->read().t_s, now_s + kTick_s);
 }
 
-TEST_P(MachineIoContract, AJointGoesWhereItsTargetIsAndIsReadBackThere) {
+TEST_P(MachineIoMotionContract, AJointGoesWhereItsTargetIsAndIsReadBackThere) {
   constexpr double kStep_rad = 0.05, kTolerance_rad = 2e-3;
   const double target_rad = io_->read().position[hip()] - kStep_rad;
   JointCommand command = command_for(5.0);
@@ -97,7 +102,7 @@ TEST_P(MachineIoContract, AJointGoesWhereItsTargetIsAndIsReadBackThere) {
   EXPECT_NEAR(io_->read().position[hip()], target_rad, kTolerance_rad);
 }
 
-TEST_P(MachineIoContract, RatesStayWithinTheJointsLimit) {
+TEST_P(MachineIoMotionContract, RatesStayWithinTheJointsLimit) {
   const Joint& limits = machine().joints[hip()];
   JointCommand command = command_for(3.0);
   command.rate[hip()] = -1.5 * limits.max_rate;
@@ -113,7 +118,7 @@ TEST_P(MachineIoContract, RatesStayWithinTheJointsLimit) {
   EXPECT_GE(fastest_rad_s, 0.5 * limits.max_rate);
 }
 
-TEST_P(MachineIoContract, PositionsStayWithinTheJointsLimits) {
+TEST_P(MachineIoMotionContract, PositionsStayWithinTheJointsLimits) {
   constexpr double kOverrun_rad = 0.02;
   const Joint& limits = machine().joints[joint("DIPPER")];
   JointCommand command = command_for(20.0);
@@ -125,7 +130,7 @@ TEST_P(MachineIoContract, PositionsStayWithinTheJointsLimits) {
   EXPECT_LE(position_rad, limits.lower + 2.0 * kOverrun_rad);
 }
 
-TEST_P(MachineIoContract, AnExpiredCommandEndsAllMotionAndIsCounted) {
+TEST_P(MachineIoMotionContract, AnExpiredCommandEndsAllMotionAndIsCounted) {
   ASSERT_EQ(io_->write(drive_command(0.8, 2.0)), WriteOutcome::kAccepted);
   wait(1.9);
   ASSERT_GT(std::abs(io_->read().rate[wheel(0)]), 0.5) << "it must move before it can stop";
@@ -149,7 +154,7 @@ TEST_P(MachineIoContract, ACommandThatIsExpiredAlreadyIsRejected) {
   EXPECT_EQ(io_->health().commands_rejected, 1);
 }
 
-TEST_P(MachineIoContract, ACommandThatIsNotFiniteIsRejectedAndEndsTheMotion) {
+TEST_P(MachineIoMotionContract, ACommandThatIsNotFiniteIsRejectedAndEndsTheMotion) {
   for (const double poison :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     ASSERT_EQ(io_->write(drive_command(0.8, 10.0)), WriteOutcome::kAccepted);
@@ -180,7 +185,7 @@ TEST_P(MachineIoContract, ACommandOfTheWrongSizeIsRejected) {
   EXPECT_LT(fastest_rate(), 0.01);
 }
 
-TEST_P(MachineIoContract, StopEndsTheMotionUntilReleased) {
+TEST_P(MachineIoMotionContract, StopEndsTheMotionUntilReleased) {
   ASSERT_EQ(io_->write(drive_command(0.8, 20.0)), WriteOutcome::kAccepted);
   wait(1.5);
   io_->stop();
@@ -196,7 +201,7 @@ TEST_P(MachineIoContract, StopEndsTheMotionUntilReleased) {
   EXPECT_GT(std::abs(io_->read().rate[wheel(0)]), 0.5);
 }
 
-TEST_P(MachineIoContract, WheelsAndTurnIgnorePositionTargets) {
+TEST_P(MachineIoMotionContract, WheelsAndTurnIgnorePositionTargets) {
   JointCommand command = command_for(2.0);
   for (const int index : {wheel(0), joint("TURN")}) {
     command.has_position_target[index] = true;
@@ -205,6 +210,89 @@ TEST_P(MachineIoContract, WheelsAndTurnIgnorePositionTargets) {
   ASSERT_EQ(io_->write(command), WriteOutcome::kAccepted);
   wait(1.5);
   EXPECT_LT(fastest_rate(), 0.01);
+}
+
+TEST_P(MachineIoContract, EveryJointHasAnAgeAndAQuality) {
+  wait(5 * kTick_s);
+  const MachineState state = io_->read();
+  for (int i = 0; i < state.num_joints; ++i) {
+    EXPECT_EQ(state.joint_quality[i], SignalQuality::kOk) << machine().joints[i].name;
+    EXPECT_GE(state.joint_age_s[i], 0.0);
+    EXPECT_LT(state.joint_age_s[i], 0.03);
+  }
+}
+
+TEST_P(MachineIoContract, IsActiveAndHoldsWhileNothingIsWritten) {
+  EXPECT_EQ(io_->lifecycle(), Lifecycle::kActive);
+  EXPECT_EQ(io_->health().level, HealthLevel::kHolding);
+  EXPECT_TRUE(io_->activate()) << "does nothing";
+  EXPECT_EQ(io_->lifecycle(), Lifecycle::kActive);
+}
+
+TEST_P(MachineIoContract, WritesAreRejectedWhileInactive) {
+  io_->deactivate();
+  EXPECT_EQ(io_->lifecycle(), Lifecycle::kInactive);
+  EXPECT_EQ(io_->write(drive_command(0.8, 1.0)), WriteOutcome::kRejectedNotActive);
+  EXPECT_EQ(io_->health().level, HealthLevel::kHolding);
+  wait(5 * kTick_s);
+  EXPECT_LT(fastest_rate(), 0.03) << "reads go on";
+  io_->deactivate();
+  EXPECT_EQ(io_->lifecycle(), Lifecycle::kInactive) << "does nothing";
+  const auto activated = io_->activate();
+  ASSERT_TRUE(activated) << activated.error().message;
+  EXPECT_EQ(io_->lifecycle(), Lifecycle::kActive);
+  EXPECT_EQ(io_->write(drive_command(0.8, 1.0)), WriteOutcome::kAccepted);
+}
+
+TEST_P(MachineIoContract, StopRejectsWritesUntilReleased) {
+  io_->stop();
+  EXPECT_EQ(io_->write(drive_command(0.8, 1.0)), WriteOutcome::kRejectedStopped);
+  wait(5 * kTick_s);
+  io_->release();
+  wait(50 * kTick_s);
+  EXPECT_EQ(io_->write(drive_command(0.8, 1.0)), WriteOutcome::kAccepted);
+}
+
+TEST_P(MachineIoContract, WhatIsFarBeyondTheLimitsIsRejected) {
+  JointCommand command = drive_command(0.8, 10.0);
+  command.rate[hip()] = 3.0 * machine().joints[hip()].max_rate;
+  EXPECT_EQ(io_->write(command), WriteOutcome::kRejectedRange);
+  command = command_for(10.0);
+  command.has_position_target[hip()] = true;
+  command.position_target[hip()] = machine().joints[hip()].upper + 1.0;
+  EXPECT_EQ(io_->write(command), WriteOutcome::kRejectedRange);
+  wait(1.0);
+  EXPECT_LT(fastest_rate(), 0.03);
+}
+
+TEST_P(MachineIoContract, RejectedCommandsAreCounted) {
+  JointCommand command = drive_command(0.8, 10.0);
+  command.rate[hip()] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(io_->write(command), WriteOutcome::kRejectedNotFinite);
+  EXPECT_EQ(io_->health().commands_rejected, 1);
+  EXPECT_EQ(io_->write(drive_command(0.8, 1.0)), WriteOutcome::kAccepted);
+  EXPECT_EQ(io_->health().commands_accepted, 1);
+}
+
+TEST_P(MachineIoMotionContract, WhatIsFarBeyondTheLimitsEndsTheMotion) {
+  ASSERT_EQ(io_->write(drive_command(0.8, 20.0)), WriteOutcome::kAccepted);
+  wait(1.5);
+  JointCommand command = drive_command(0.8, 20.0);
+  command.rate[wheel(0)] = 3.0 * machine().joints[wheel(0)].max_rate;
+  EXPECT_EQ(io_->write(command), WriteOutcome::kRejectedRange);
+  wait(1.2);
+  EXPECT_LT(fastest_rate(), 0.03);
+}
+
+TEST_P(MachineIoMotionContract, DeactivationStopsFirstAndNothingComesBack) {
+  ASSERT_EQ(io_->write(drive_command(0.8, 20.0)), WriteOutcome::kAccepted);
+  wait(1.5);
+  ASSERT_GT(std::abs(io_->read().rate[wheel(0)]), 0.5);
+  io_->deactivate();
+  EXPECT_LT(fastest_rate(), 0.05);
+  ASSERT_TRUE(io_->activate());
+  wait(1.0);
+  EXPECT_LT(fastest_rate(), 0.03) << "the command of before must not come back";
 }
 
 inline std::string subject_name(const ::testing::TestParamInfo<MachineIoSubject>& info) {
