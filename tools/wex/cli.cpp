@@ -9,9 +9,11 @@
 #include "tools/bench/kinematics_bench.hpp"
 #include "tools/bench/mpc_bench.hpp"
 #include "tools/bench/terrain_bench.hpp"
+#include "tools/wex/can_command.hpp"
 #include "tools/wex/machine_command.hpp"
 #include "tools/wex/output_folder.hpp"
 #include "tools/wex/pipeline.hpp"
+#include "tools/wex/replay_command.hpp"
 
 namespace wex::app {
 namespace {
@@ -36,6 +38,8 @@ struct Options {
   ModelOptions model;
   DriveBenchOptions drive_bench;
   MachineOptions can_machine;
+  CanOptions can;
+  ReplayOptions replay;
 };
 
 template <typename Parse>
@@ -203,6 +207,53 @@ void add_can_machine(CLI::App& app, MachineOptions& machine) {
   add_machine(command, machine.machine);
 }
 
+void add_can(CLI::App& app, CanOptions& can) {
+  CLI::App& command = *app.add_subcommand("can", "A person's tools at the machine's CAN bus");
+  command.require_subcommand(1);
+  const auto add = [&](const char* name, CanAction action, const char* help) {
+    CLI::App* tool = command.add_subcommand(name, help);
+    tool->add_option("iface", can.can_interface, "CAN interface, such as can0")
+        ->check(parsed_by(check_interface_name))
+        ->type_name("IFACE")
+        ->required();
+    tool->callback([&can, action] { can.action = action; });
+    return tool;
+  };
+  const auto add_duration = [&can](CLI::App* tool) {
+    tool->add_option_function<double>(
+            "--duration", [&can](double s) { can.duration_s = s; }, "End after S seconds [Ctrl-C]")
+        ->check(CLI::Range(0.1, 1e6))
+        ->type_name("S");
+  };
+  CLI::App* monitor =
+      add("monitor", CanAction::kMonitor, "Decoded frames with rates, ages, losses; sends nothing");
+  monitor->add_flag("--once", can.once, "One table after a second (or --duration)");
+  monitor->add_flag("--json", can.json, "One JSON object per line");
+  add_duration(monitor);
+  CLI::App* enable =
+      add("enable", CanAction::kEnable,
+          "Enable the machine and keep it so without any motion, until Ctrl-C; exit code 5 if it "
+          "does not stay enabled");
+  add_duration(enable);
+  add_machine(*enable, can.machine);
+  add("stop", CanAction::kStop,
+      "Emergency stop by the bus (never the only way to stop); exit code 0 only if confirmed");
+  add("reset", CanAction::kReset,
+      "Leave fault or emergency stop; exit code 0 only if confirmed. Enables nothing");
+}
+
+void add_replay(CLI::App& app, ReplayOptions& replay) {
+  CLI::App& command =
+      *app.add_subcommand("replay", "Tell what a recorded bus says, decoded as live");
+  command.add_option("log", replay.log, "Log of candump -L, such as bus.log of a run")
+      ->type_name("LOG")
+      ->required();
+  command.add_option("map", replay.map, "Map that the machine must have stood on")
+      ->type_name("MAP");
+  command.add_option("--out", replay.out, "Folder for executed.csv [none]")->type_name("DIR");
+  add_machine(command, replay.machine);
+}
+
 void add_bench(CLI::App& app, DriveBenchOptions& drive) {
   CLI::App& command = *app.add_subcommand("bench", "Measure: medians and percentiles on stdout");
   command.require_subcommand(1);
@@ -344,6 +395,8 @@ int run_cli(int argc, const char* const* argv, std::ostream& out, std::ostream& 
   add_model(app, options.model);
   add_bench(app, options.drive_bench);
   add_can_machine(app, options.can_machine);
+  add_can(app, options.can);
+  add_replay(app, options.replay);
   if (const auto problem = unknown_command(app, argc, argv)) {
     return refuse(err, {ErrorCode::kBadInput, *problem + " (see wex --help)"});
   }
@@ -363,6 +416,14 @@ int run_cli(int argc, const char* const* argv, std::ostream& out, std::ostream& 
   if (name == "terrain") return terrain_command(options.terrain, out, err);
   if (name == "model") return model_command(options.model, out, err);
   if (name == "bench") return bench_command(command, options.drive_bench, out, err);
+  if (name == "can") {
+    const Result<void> done = run_can(options.can, out);
+    return done ? 0 : refuse(err, done.error());
+  }
+  if (name == "replay") {
+    const Result<void> replayed = run_replay(options.replay, out);
+    return replayed ? 0 : refuse(err, replayed.error());
+  }
   if (name == "machine") {
     const Result<void> ran = run_machine(options.can_machine, out);
     return ran ? 0 : refuse(err, ran.error());

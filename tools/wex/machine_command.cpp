@@ -1,6 +1,5 @@
 #include "tools/wex/machine_command.hpp"
 
-#include <csignal>
 #include <cstdio>
 #include <memory>
 
@@ -13,23 +12,12 @@
 #include "tools/wex/machine_log.hpp"
 #include "tools/wex/machine_runner.hpp"
 #include "tools/wex/scenario.hpp"
+#include "tools/wex/stop_signal.hpp"
 
 namespace wex::app {
 namespace {
 
 constexpr double kFlatGround_m = 40.0;  ///< edge of the ground without a map
-
-std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
-
-extern "C" void request_stop(int) { stop_requested = true; }
-
-void stop_on_signals() {
-  struct sigaction action{};
-  action.sa_handler = request_stop;  // without SA_RESTART: sleeps end at once
-  sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGINT, &action, nullptr);
-}
 
 Result<TerrainMap> flat_ground() {
   Grid grid;
@@ -73,8 +61,7 @@ std::string summary(const can::Electronics& electronics, std::int64_t now_ms) {
 }  // namespace
 
 Result<void> run_machine(const MachineOptions& options, std::ostream& out) {
-  stop_requested = false;
-  stop_on_signals();
+  const std::atomic<bool>& stop_requested = stop_on_signals();
   const Result<MachineModel> machine = load_machine(options.machine);
   if (!machine) return tl::unexpected(machine.error());
   const Result<TerrainMap> terrain = ground_of(options);
