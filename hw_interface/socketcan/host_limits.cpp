@@ -11,7 +11,10 @@ HostLimits::HostLimits(const MachineModel& machine, const HostLimitsSettings& se
   for (int i = 0; i < num_joints_; ++i) {
     const JointSlot slot = slot_of(machine.joints[i].name);
     WEX_EXPECTS(slot.zone >= 0);
-    joints_[i] = {limits_of(slot), machine.joints[i].role == JointRole::kWheel};
+    const bool is_wheel = machine.joints[i].role == JointRole::kWheel;
+    const bool is_turn = machine.arm && !machine.arm->coordinates.empty() &&
+                         machine.arm->coordinates.front() == kNumBaseCoordinates + i;
+    joints_[i] = {limits_of(slot), is_wheel, !is_wheel && !is_turn};
   }
 }
 
@@ -36,7 +39,7 @@ LimitOutcome HostLimits::check(JointCommand& command,
       return LimitOutcome::kRejectedRange;
     }
     bring_into(command.rate[i], -limits.max_rate, limits.max_rate);
-    if (!command.has_position_target[i]) continue;
+    if (!command.has_position_target[i] || !joints_[i].takes_target) continue;
     double& target = command.position_target[i];
     if (target < limits.lower - settings_.hard_position_margin ||
         target > limits.upper + settings_.hard_position_margin) {
@@ -50,11 +53,11 @@ LimitOutcome HostLimits::check(JointCommand& command,
 }
 
 double HostLimits::largest_rate(int joint, double rate, double position) const noexcept {
-  const auto& [limits, wheel] = joints_[joint];
+  const SlotLimits& limits = joints_[joint].limits;
   const double sign = rate > 0.0 ? 1.0 : -1.0;
   const double way = rate > 0.0 ? limits.upper - position : position - limits.lower;
   const double braking = std::sqrt(2.0 * limits.max_acceleration * std::max(0.0, way));
-  const double at_once = wheel ? settings_.wheel_change_rad_s : 0.0;
+  const double at_once = joints_[joint].wheel ? settings_.wheel_change_rad_s : 0.0;
   const double per_period = limits.max_acceleration * settings_.period_s;
   const double same_way = std::max(0.0, sign * sent_[head_][joint]);
   double slowest = same_way;

@@ -52,6 +52,7 @@ class HostLimits {
   struct JointData {
     SlotLimits limits;
     bool wheel = false;
+    bool takes_target = false;  ///< wheels and TURN go by rate only
   };
   [[nodiscard]] double largest_rate(int joint, double rate, double position) const noexcept;
   void remember(const std::array<double, kMaxJoints>& rate) noexcept;
