@@ -35,9 +35,9 @@ LimitVerdict MachineLimits::judge_echo(std::uint32_t echo_time_ms,
 
 bool MachineLimits::within_window(int joint, double rate, double change,
                                   std::int64_t now_ms) const noexcept {
-  const std::int64_t oldest = now_ms / kBucket_ms - kNumBuckets;
+  const std::int64_t too_old = (now_ms - settings_.window_ms) / kBucket_ms - 1;
   for (const Bucket& bucket : buckets_) {
-    if (bucket.number <= oldest) continue;
+    if (bucket.number <= too_old) continue;
     const double from = rate > 0.0 ? bucket.least[joint] : bucket.greatest[joint];
     if (!reachable(rate, from, change)) return false;
   }
@@ -67,12 +67,14 @@ LimitVerdict MachineLimits::judge(const ZoneCommand& command,
     }
 
     const double acceleration = settings_.acceleration_factor * limit.max_acceleration;
+    const double window_change =
+        settings_.window_factor * limit.max_acceleration * kSecondsPerMs * settings_.window_ms;
     const double at_once =
         settings_.rate_tolerance + (is_wheel_[i] ? settings_.wheel_change_rad_s : 0.0);
     if (!reachable(rate, last_rate_[i], acceleration * dt_s + at_once)) {
       return LimitVerdict::kRateChange;
     }
-    if (!within_window(i, rate, acceleration * kSecondsPerMs * kWindow_ms + at_once, now_ms)) {
+    if (!within_window(i, rate, window_change + at_once, now_ms)) {
       return LimitVerdict::kWindow;
     }
   }

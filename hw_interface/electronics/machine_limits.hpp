@@ -15,15 +15,18 @@ enum class LimitVerdict : std::uint8_t {
   kRate,        ///< faster than the joint may
   kSoftStop,    ///< towards a stop faster than can be braked
   kRateChange,  ///< away from zero faster than the acceleration allows since the last command
-  kWindow       ///< the same over the last 250 ms
+  kWindow       ///< the same over the last window_ms
 };
 
 struct MachineLimitsSettings {
   int max_echo_age_ms = 60;
-  int cycle_ms = 10;                  ///< a command may always change as much as in one cycle
-  int max_change_ms = 50;             ///< and at most as much as in the time-out
-  double acceleration_factor = 1.2;   ///< of the joint's own; jitter of the sender's cycle
-  double rate_tolerance = 2e-3;       ///< rad/s or m/s: rounding on the bus
+  int cycle_ms = 10;       ///< a command may always change as much as in one cycle
+  int max_change_ms = 50;  ///< and at most as much as in the time-out
+  double acceleration_factor =
+      1.2;                       ///< of the joint's own, per command: the sender's cycle jitters
+  double window_factor = 1.2;    ///< likewise over window_ms
+  int window_ms = 250;           ///< at most MachineLimits::kMaxWindow_ms
+  double rate_tolerance = 2e-3;  ///< rad/s or m/s: rounding on the bus
   double wheel_change_rad_s = 0.15;   ///< brake latch and droop corrections of the drives, at once
   double latency_allowance_s = 0.03;  ///< the host's positions are older than ours
 };
@@ -33,15 +36,16 @@ struct MachineLimitsSettings {
 ///   |v| <= max_rate + tolerance
 ///   v <= sqrt(2 a d) + tolerance,  d = max(0, upper - p + max_rate * latency_allowance); likewise
 ///        below (a continuous joint has no stops)
-///   |v| <= reach(v_last, factor a dt) and the same with every command of the last 250 ms in place
-///        of v_last and 250 ms for dt, where reach(u, c) = c + tolerance + (u of v's sign ? |u| :
-///        0)
+///   |v| <= reach(v_last, factor a dt) and the same with every command of the last window_ms in
+///   place
+///        of v_last and window_ms for dt, where reach(u, c) = c + tolerance + (u of v's sign ? |u|
+///        : 0)
 /// so going towards zero is always allowed. dt is the time since the last accepted command, within
 /// [cycle, max_change]. An inactive joint counts as v = 0. Wheels: wheel_change is added to c.
 /// A frame is judged as a whole: nothing is clamped. Pure, noexcept, allocation-free.
 class MachineLimits {
  public:
-  static constexpr int kWindow_ms = 250;
+  static constexpr int kMaxWindow_ms = 500;
   using Limits = std::array<SlotLimits, kMaxZoneJoints>;
 
   MachineLimits(const Limits& limits, const std::array<bool, kMaxZoneJoints>& is_wheel,
@@ -60,7 +64,7 @@ class MachineLimits {
 
  private:
   static constexpr int kBucket_ms = 10;
-  static constexpr int kNumBuckets = kWindow_ms / kBucket_ms + 1;
+  static constexpr int kNumBuckets = kMaxWindow_ms / kBucket_ms + 1;
   /// Least and greatest rate accepted within 10 ms.
   struct Bucket {
     std::int64_t number = -1;  ///< time / kBucket_ms; -1: never used

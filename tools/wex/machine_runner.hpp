@@ -27,7 +27,8 @@ class SystemPacer final : public Pacer {
 
 struct MachineRunnerSettings {
   bool lock_step = false;
-  std::optional<double> estop_after_s, exit_after_s;  ///< machine time
+  std::optional<double> estop_after_s = std::nullopt,
+                        exit_after_s = std::nullopt;  ///< machine time
   double free_run_after_s = 1.0;  ///< wall time without LockStep until the clock runs by itself
   double forget_after_s = 0.1;    ///< later than that, periods are left out, not caught up
   double max_lock_step_s = 10.0;  ///< what one LockStep frame may ask for
