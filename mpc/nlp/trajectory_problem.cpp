@@ -69,8 +69,8 @@ void TrajectoryProblem::build_bounds() {
     }
     for (int i = kNumBaseCoordinates; i < layout.node_size(); ++i) {
       const Joint& joint = setup_.machine->joints[layout.coordinates[i] - kNumBaseCoordinates];
-      lower_[offset + i] = joint.lower;
-      upper_[offset + i] = joint.upper;
+      lower_[offset + i] = joint.lower + setup_.joint_margin_rad;
+      upper_[offset + i] = joint.upper - setup_.joint_margin_rad;
     }
   }
   if (setup_.fix_goal) {

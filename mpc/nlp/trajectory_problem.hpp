@@ -28,7 +28,8 @@ struct TrajectorySetup {
   std::vector<NodeVector> reference;    ///< node 0 (the start state) .. num_nodes
   std::vector<Eigen::VectorXd> q_held;  ///< full q per node for what is not optimized
   double max_tilt_rad = 0.35;
-  bool fix_goal = false;  ///< x, y, yaw of the last node as in the reference
+  double joint_margin_rad = 0.0;  ///< kept from each end stop
+  bool fix_goal = false;          ///< x, y, yaw of the last node as in the reference
   bool end_at_rest = false;
   CoordinateWeights tracking, rates, accelerations;
   std::vector<std::pair<std::shared_ptr<const NodeConstraint>, Softness>> node_constraints;

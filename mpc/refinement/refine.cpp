@@ -39,6 +39,7 @@ TrajectorySetup make_setup(const TerrainMap& terrain, const MachineModel& machin
   }
   setup.before_first = setup.reference.front();
   setup.max_tilt_rad = settings.max_tilt_rad;
+  setup.joint_margin_rad = settings.joint_margin_rad;
   setup.fix_goal = true;
   setup.end_at_rest = true;
   setup.tracking = kTracking;

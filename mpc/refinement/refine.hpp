@@ -15,7 +15,8 @@ struct RefinementSettings {
   double min_stability_margin_m = 0.25;
   double min_signed_distance_m = 0.15;
   double max_tilt_rad = 0.3490658503988659;
-  double rate_fraction = 0.9;  ///< share of each joint's rate limit
+  double rate_fraction = 0.9;      ///< share of each joint's rate limit
+  double joint_margin_rad = 0.03;  ///< to the end stops, left to whoever tracks the result
   int max_iterations = 200;
   double max_cpu_time_s = 60.0;
   double height_tolerance_m = 1e-3;

@@ -50,6 +50,27 @@ TEST_P(Refinement, KeepsEveryRateWithinItsLimit) {
   }
 }
 
+TEST_P(Refinement, LeavesTheTrackerRoomToEveryEndStop) {
+  const TerrainMap terrain = test::rolling_ground(GetParam().amplitude_m);
+  const Plan plan = test::arc_plan(terrain, machine_, {2.0, 0.0, 0.0}, GetParam().length_m,
+                                   GetParam().curvature_1_m);
+  const RefinementSettings settings;
+  const Result<RefinedTrajectory> refined = refine(terrain, machine_, plan, settings);
+  ASSERT_TRUE(refined.has_value()) << refined.error().message;
+  for (std::size_t k = 1; k < refined->nodes.size(); ++k) {
+    for (const WheeledLeg& leg : machine_.legs) {
+      for (const int coordinate : {leg.haa, leg.hfe, leg.steer}) {
+        const Joint& joint = machine_.joints[coordinate - kNumBaseCoordinates];
+        const double q = refined->nodes[k].q[coordinate];
+        EXPECT_GE(q - joint.lower, settings.joint_margin_rad - 1e-3)
+            << joint.name << ", node " << k;
+        EXPECT_GE(joint.upper - q, settings.joint_margin_rad - 1e-3)
+            << joint.name << ", node " << k;
+      }
+    }
+  }
+}
+
 TEST(RefinementErrors, RefusesAPlanThatLiftsAWheel) {
   const MachineModel machine = load_machine().value();
   const TerrainMap terrain = test::rolling_ground(0.0);
