@@ -48,12 +48,6 @@ class HostMailbox {
   void clear() noexcept {
     for (Entry& entry : entries_) entry.pending = false;
   }
-  [[nodiscard]] bool pending() const noexcept {
-    for (const Entry& entry : entries_) {
-      if (entry.pending) return true;
-    }
-    return false;
-  }
   /// Of the last frame that was taken.
   [[nodiscard]] std::uint8_t sent_counter(int slot) const noexcept {
     return entries_[slot].sent_counter;
