@@ -175,9 +175,9 @@ const char* describe(HostCause cause) noexcept {
     case HostCause::kEStopOpen:
       return "the e-stop chain is open";
     case HostCause::kOtherDbc:
-      return "the machine was built from another wex.dbc";
+      break;
   }
-  return "unknown cause";
+  return "the machine was built from another wex.dbc";
 }
 
 HostState advance(const HostState& before, const HostInputs& in, const HostTimes& times) noexcept {
@@ -225,9 +225,9 @@ HostState advance(const HostState& before, const HostInputs& in, const HostTimes
       return advance_handshake(state, in, times);
     case HostPhase::kActive:
     case HostPhase::kHold:
-      return advance_session(state, in, times);
+      break;
   }
-  return state;
+  return advance_session(state, in, times);
 }
 
 HostOutputs outputs_of(const HostState& state, const HostInputs& in) noexcept {
@@ -259,7 +259,6 @@ HostOutputs outputs_of(const HostState& state, const HostInputs& in) noexcept {
       out.send_commands = state.session != 0;
       out.live = state.phase == HostPhase::kActive && !in.stop;
       out.silent = state.phase == HostPhase::kHold && state.cause == HostCause::kBusOff;
-      return out;
   }
   return out;
 }

@@ -32,7 +32,7 @@ int restriction(MachineMode mode) noexcept {
     case MachineMode::kFault:
       return 5;
     case MachineMode::kEStop:
-      return 6;
+      break;
   }
   return 6;
 }
@@ -213,9 +213,9 @@ FrameVerdict HostFeedback::take(const CanFrame& frame, std::int64_t now_ns) noex
     case MessageKind::kLockStep:
       return judge_own<LockStep>(frame);
     case MessageKind::kUnknown:
-      return frame.extended || frame.remote ? FrameVerdict::kMalformed : FrameVerdict::kUnknown;
+      break;
   }
-  return FrameVerdict::kUnknown;
+  return frame.extended || frame.remote ? FrameVerdict::kMalformed : FrameVerdict::kUnknown;
 }
 
 JointMeasurement HostFeedback::measurement() const noexcept {

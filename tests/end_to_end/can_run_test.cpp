@@ -161,7 +161,7 @@ class CanRun : public ::testing::Test {
     std::printf("last good command -> outputs shut %.0f ms, joints stand %.0f ms, wheels %.0f ms\n",
                 log.ms_until_zero("driven", from, end), joints_ms, wheels_ms);
     EXPECT_LE(joints_ms, 150.0);
-    EXPECT_LE(wheels_ms, 800.0);
+    EXPECT_LE(wheels_ms, 150.0);
     EXPECT_EQ(log.text("brakes", end - 1), "1");
   }
 

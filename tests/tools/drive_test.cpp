@@ -22,6 +22,7 @@ class RollingMachine final : public MachineIo {
     MachineState state;
     state.t_s = t_s_;
     state.base = q_.head<kNumBaseCoordinates>();
+    state.base_velocity.setZero();
     state.base_velocity[0] = speed_;
     state.num_joints = machine_.num_joints();
     for (int j = 0; j < state.num_joints; ++j) state.position[j] = q_[kNumBaseCoordinates + j];

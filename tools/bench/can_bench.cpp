@@ -6,8 +6,6 @@
 #include <chrono>
 #include <cstdio>
 #include <fstream>
-#include <iostream>
-#include <memory>
 
 #include "tools/bench/can_bench_parts.hpp"
 #include "tools/bench/can_bench_table.hpp"
@@ -53,18 +51,17 @@ Ran run(const CanBenchPart& part) {
 
 }  // namespace
 
-int bench_can(bool full, const std::filesystem::path& folder) {
+Result<int> bench_can(const CanBenchOptions& options, std::ostream& out, std::ostream& err) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  std::ofstream log(folder / "log.txt"), csv(folder / "can_bench.csv");
+  std::filesystem::create_directories(options.out, error);
+  std::ofstream log(options.out / "log.txt"), csv(options.out / "can_bench.csv");
   if (!log || !csv) {
-    std::cerr << "wex: " << folder.string() << " cannot be written\n";
-    return 1;
+    return fail(ErrorCode::kBadInput, "--out " + options.out.string() + " cannot be written");
   }
   const std::filesystem::path build = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   const auto begin = std::chrono::steady_clock::now();
   std::vector<CanBenchRow> rows;
-  for (const CanBenchPart& part : can_bench_parts(full, build, WEX_SOURCE_DIR)) {
+  for (const CanBenchPart& part : can_bench_parts(options.full, build, WEX_SOURCE_DIR)) {
     const Ran ran = run(part);
     for (const CanBenchRow& row : can_bench_rows(part, ran.output, ran.exit_code)) {
       rows.push_back(row);
@@ -73,11 +70,10 @@ int bench_can(bool full, const std::filesystem::path& folder) {
         << "\n"
         << ran.output << std::flush;
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
-    std::cerr << part.test << " done after " << static_cast<int>(passed.count()) << " s"
-              << std::endl;
+    err << part.test << " done after " << static_cast<int>(passed.count()) << " s" << std::endl;
   }
   csv << can_bench_csv(rows);
-  std::cout << can_bench_table(rows);
+  out << can_bench_table(rows);
   bool all_passed = true;
   for (const CanBenchRow& row : rows) all_passed = all_passed && row.passed;
   return all_passed ? 0 : 5;

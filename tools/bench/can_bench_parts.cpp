@@ -90,11 +90,22 @@ std::vector<CanBenchPart> can_bench_parts(bool full, const std::filesystem::path
             "electronics/electronics_handshake_test");
   parts.add("T16", "limits of both sides on the same vectors", ">= 100,000, equal verdicts",
             "electronics/both_limits_test");
-  parts.add("T19", "record, then replay twice", "bit-equal", "replay/replay_machine_test");
+  parts.add("T19", "record, then replay twice", "bit-equal", "replay/replay_machine_test",
+            "ReplayOfADrive.*");
   parts.add("T20", "contract suite: simulation", "same outcomes",
             "simulated_machine_contract_test");
-  parts.add("T20", "contract suite: bus and replay", "same outcomes",
-            "socketcan/socketcan_contract_test");
+  parts.add("T20", "contract suite: electronics behind a pipe", "same outcomes",
+            "socketcan/socketcan_machine_contract_test");
+  parts.add("T20", "contract suite: replay", "same outcomes", "replay/replay_machine_test",
+            "*Contract*");
+  parts.add({"T20",
+             "contract suite: electronics on a real vcan",
+             "same outcomes",
+             CanBenchOutput::kGoogleTest,
+             {parts.source() + "/tools/with_vcan", "--",
+              parts.tests() + "/socketcan/socketcan_machine_vcan_test"},
+             {"WITH_VCAN_TIMEOUT=200"},
+             230});
   if (full) {
     parts.add({"T21",
                "mutation of the protection (all files: tools/check/mutate_safety_files)",

@@ -5,6 +5,7 @@
 
 #include "models/excavator/mjcf.hpp"
 #include "models/terrain/synthetic.hpp"
+#include "tools/bench/can_bench.hpp"
 #include "tools/bench/drive_bench.hpp"
 #include "tools/bench/kinematics_bench.hpp"
 #include "tools/bench/mpc_bench.hpp"
@@ -37,6 +38,7 @@ struct Options {
   TerrainOptions terrain;
   ModelOptions model;
   DriveBenchOptions drive_bench;
+  CanBenchOptions can_bench;
   MachineOptions can_machine;
   CanOptions can;
   ReplayOptions replay;
@@ -254,12 +256,19 @@ void add_replay(CLI::App& app, ReplayOptions& replay) {
   add_machine(command, replay.machine);
 }
 
-void add_bench(CLI::App& app, DriveBenchOptions& drive) {
+void add_bench(CLI::App& app, DriveBenchOptions& drive, CanBenchOptions& can) {
   CLI::App& command = *app.add_subcommand("bench", "Measure: medians and percentiles on stdout");
   command.require_subcommand(1);
   command.add_subcommand("terrain", "Terrain layers and queries");
   command.add_subcommand("kinematics", "Kinematics with first and second derivatives");
   command.add_subcommand("mpc", "Refinement and receding-horizon solves");
+  CLI::App& bus = *command.add_subcommand(
+      "can",
+      "The bus: every test of protocol, interface and electronics, with faults, in one table");
+  bus.add_flag("--full", can.full, "All of it, about 75 minutes [under 6 minutes]");
+  bus.add_option("--out", can.out, "Folder for can_bench.csv and the log")
+      ->type_name("DIR")
+      ->capture_default_str();
   CLI::App& drives = *command.add_subcommand(
       "drive", "Whole runs over several terrains and seeds: success counts and worst figures");
   drives.add_option("--seeds", drive.seeds, "Seeds per terrain")
@@ -328,13 +337,14 @@ int model_command(const ModelOptions& options, std::ostream& out, std::ostream& 
   return 0;
 }
 
-int bench_command(const CLI::App& command, const DriveBenchOptions& drive, std::ostream& out,
+int bench_command(const CLI::App& command, const Options& options, std::ostream& out,
                   std::ostream& err) {
   const std::string name = command.get_subcommands().front()->get_name();
   if (name == "terrain") return bench_terrain();
   if (name == "kinematics") return bench_kinematics();
   if (name == "mpc") return bench_mpc();
-  const Result<int> code = bench_drive(drive, out, err);
+  const Result<int> code = name == "can" ? bench_can(options.can_bench, out, err)
+                                         : bench_drive(options.drive_bench, out, err);
   return code ? *code : refuse(err, code.error());
 }
 
@@ -393,7 +403,7 @@ int run_cli(int argc, const char* const* argv, std::ostream& out, std::ostream& 
   add_plan(app, options);
   add_terrain(app, options.terrain);
   add_model(app, options.model);
-  add_bench(app, options.drive_bench);
+  add_bench(app, options.drive_bench, options.can_bench);
   add_can_machine(app, options.can_machine);
   add_can(app, options.can);
   add_replay(app, options.replay);
@@ -415,7 +425,7 @@ int run_cli(int argc, const char* const* argv, std::ostream& out, std::ostream& 
   const std::string name = command.get_name();
   if (name == "terrain") return terrain_command(options.terrain, out, err);
   if (name == "model") return model_command(options.model, out, err);
-  if (name == "bench") return bench_command(command, options.drive_bench, out, err);
+  if (name == "bench") return bench_command(command, options, out, err);
   if (name == "can") {
     const Result<void> done = run_can(options.can, out);
     return done ? 0 : refuse(err, done.error());

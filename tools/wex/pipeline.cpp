@@ -237,9 +237,8 @@ class Pipeline {
     } else {
       report_.failure = enabled.error();
     }
-    report_.bus = bus_report(report_.options.can_interface, lock_step_, *bus_);
     bus_->deactivate();
-    report_.bus->statistics = bus_->statistics();
+    report_.bus = bus_report(report_.options.can_interface, lock_step_, *bus_);
     StageTime time = watch_.lap();
     if (settings.solve_beside && report_.drive) {
       for (const SolveSample& solve : report_.drive->solves) time.cpu_s += solve.cpu_time_s;

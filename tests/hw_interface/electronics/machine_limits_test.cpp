@@ -182,11 +182,22 @@ TEST_F(MachineLimitsTest, TheWindowForgetsWhatIsOlderThan250Ms) {
   history(kJoint, 0.0, 30);
   history(kJoint, 0.3, 24);
   EXPECT_EQ(judge(kJoint, 0.3), LimitVerdict::kWindow) << "0 is 240 ms ago";
-  history(kJoint, 0.3, 2);
+  history(kJoint, 0.3, 1);
+  EXPECT_EQ(judge(kJoint, 0.3), LimitVerdict::kWindow) << "0 is 250 ms ago";
+  history(kJoint, 0.3, 1);
   EXPECT_EQ(judge(kJoint, 0.3), LimitVerdict::kOk) << "0 is 260 ms ago";
   history(kJoint, 0.0, 1);
   history(kJoint, -0.3, 24);
   EXPECT_EQ(judge(kJoint, -0.3), LimitVerdict::kWindow) << "the other way likewise";
+}
+
+TEST_F(MachineLimitsTest, TheWindowKnowsBothExtremesOfOneInstant) {
+  for (const double sign : {1.0, -1.0}) {
+    limits_.reset(now_ms_);  // 0, and in the same instant 0.3
+    limits_.accept(command(kJoint, sign * 0.3), now_ms_);
+    EXPECT_EQ(judge(kJoint, sign * 0.3), LimitVerdict::kWindow);
+    EXPECT_EQ(judge(kJoint, sign * 0.1), LimitVerdict::kOk);
+  }
 }
 
 TEST_F(MachineLimitsTest, WheelsMayChangeByTheirCorrectionsAtOnce) {

@@ -32,7 +32,7 @@ inline constexpr double kSwing_ms = 1500.0;
 struct StopFigures {
   double hold_ms = 0.0;    ///< last accepted command -> mode is not kEnabled any more
   double joints_ms = 0.0;  ///< -> all joints but the wheels stand (and only swing back from then)
-  double wheels_ms = 0.0;  ///< -> the wheels, which ramp down before their brakes close
+  double wheels_ms = 0.0;  ///< -> the wheels, with their brakes
   double bucket_m = 0.0;   ///< way of the bucket, as seen from the base
   double base_m = 0.0;     ///< way that the fastest wheel rolled
   bool stood = false;
