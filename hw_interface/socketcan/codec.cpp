@@ -52,6 +52,8 @@ double read_rated(FrameReader& reader, int field, JointQuality quality) noexcept
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+constexpr int kNoZone = -1;  // messages without a zone are always in the table
+
 // ZoneCommand
 constexpr int kValidForMs = kFirstField, kEchoTimeMs = kFirstField + 1;
 constexpr int kCommandJoints = kFirstField + 2;  // rates, then active flags
@@ -85,8 +87,9 @@ std::uint32_t dbc_hash() noexcept { return generated::kDbcHash; }
 Result<void, CodecError> encode(const ZoneCommand& message, SendContext& context,
                                 CanFrame& frame) noexcept {
   const MessageRow* row = row_of(MessageKind::kZoneCommand, message.zone);
-  const int joints = row == nullptr ? 0 : row->num_joints;
-  FrameWriter writer(row);
+  if (row == nullptr) return tl::unexpected(CodecError::kUnknownId);
+  const int joints = row->num_joints;
+  FrameWriter writer(*row);
   writer.integer(kValidForMs, message.valid_for_ms);
   writer.integer(kEchoTimeMs, message.echo_time_ms);
   for (int i = 0; i < joints; ++i) {
@@ -119,8 +122,9 @@ Read decode(const CanFrame& frame, std::uint32_t session, ZoneCommand& message) 
 Result<void, CodecError> encode(const ZoneFeedback& message, SendContext& context,
                                 CanFrame& frame) noexcept {
   const MessageRow* row = row_of(MessageKind::kZoneFeedback, message.zone);
-  const int joints = row == nullptr ? 0 : row->num_joints;
-  FrameWriter writer(row);
+  if (row == nullptr) return tl::unexpected(CodecError::kUnknownId);
+  const int joints = row->num_joints;
+  FrameWriter writer(*row);
   writer.integer(kFeedbackTime, message.sample_time_ms);
   for (int i = 0; i < joints; ++i) {
     const JointQuality quality = message.quality[i];
@@ -154,8 +158,9 @@ Read decode(const CanFrame& frame, std::uint32_t session, ZoneFeedback& message)
 Result<void, CodecError> encode(const ZonePressure& message, SendContext& context,
                                 CanFrame& frame) noexcept {
   const MessageRow* row = row_of(MessageKind::kZonePressure, message.zone);
-  const int joints = row == nullptr ? 0 : row->num_joints;
-  FrameWriter writer(row);
+  if (row == nullptr) return tl::unexpected(CodecError::kUnknownId);
+  const int joints = row->num_joints;
+  FrameWriter writer(*row);
   for (int i = 0; i < joints; ++i) {
     writer.physical(kFirstField + 2 * i, message.pressure_a_pa[i]);
     writer.physical(kFirstField + 2 * i + 1, message.pressure_b_pa[i]);
@@ -177,7 +182,9 @@ Read decode(const CanFrame& frame, std::uint32_t session, ZonePressure& message)
 
 Result<void, CodecError> encode(const ZoneStatus& message, SendContext& context,
                                 CanFrame& frame) noexcept {
-  FrameWriter writer(row_of(MessageKind::kZoneStatus, message.zone));
+  const MessageRow* row = row_of(MessageKind::kZoneStatus, message.zone);
+  if (row == nullptr) return tl::unexpected(CodecError::kUnknownId);
+  FrameWriter writer(*row);
   writer.integer(kMode, static_cast<std::int64_t>(message.mode));
   writer.integer(kFaultBits, message.fault_bits);
   writer.integer(kLastAcceptedCounter, message.last_accepted_counter);
@@ -205,7 +212,7 @@ Read decode(const CanFrame& frame, std::uint32_t session, ZoneStatus& message) n
 
 Result<void, CodecError> encode(const HostHeartbeat& message, SendContext& context,
                                 CanFrame& frame) noexcept {
-  FrameWriter writer(row_of(MessageKind::kHostHeartbeat, -1));
+  FrameWriter writer(*row_of(MessageKind::kHostHeartbeat, kNoZone));
   writer.integer(kRequest, static_cast<std::int64_t>(message.request));
   writer.integer(kHeartbeatSession, message.session);
   writer.integer(kNonce, message.nonce);
@@ -228,7 +235,7 @@ Read decode(const CanFrame& frame, std::uint32_t session, HostHeartbeat& message
 
 Result<void, CodecError> encode(const HostStop& message, SendContext& context,
                                 CanFrame& frame) noexcept {
-  FrameWriter writer(row_of(MessageKind::kHostStop, -1));
+  FrameWriter writer(*row_of(MessageKind::kHostStop, kNoZone));
   writer.integer(kSwitch, message.active ? 1 : 0);
   writer.integer(kCause, message.cause);
   return writer.finish(context, frame);
@@ -245,7 +252,7 @@ Read decode(const CanFrame& frame, std::uint32_t session, HostStop& message) noe
 
 Result<void, CodecError> encode(const OperatorCommand& message, SendContext& context,
                                 CanFrame& frame) noexcept {
-  FrameWriter writer(row_of(MessageKind::kOperatorCommand, -1));
+  FrameWriter writer(*row_of(MessageKind::kOperatorCommand, kNoZone));
   writer.integer(kFirstField, static_cast<std::int64_t>(message.action));
   return writer.finish(context, frame);
 }
@@ -260,7 +267,7 @@ Read decode(const CanFrame& frame, std::uint32_t session, OperatorCommand& messa
 
 Result<void, CodecError> encode(const EStopState& message, SendContext& context,
                                 CanFrame& frame) noexcept {
-  FrameWriter writer(row_of(MessageKind::kEStopState, -1));
+  FrameWriter writer(*row_of(MessageKind::kEStopState, kNoZone));
   writer.integer(kSwitch, message.chain_open ? 1 : 0);
   writer.integer(kCause, message.cause);
   return writer.finish(context, frame);
@@ -277,7 +284,7 @@ Read decode(const CanFrame& frame, std::uint32_t session, EStopState& message) n
 
 Result<void, CodecError> encode(const Imu& message, SendContext& context,
                                 CanFrame& frame) noexcept {
-  FrameWriter writer(row_of(MessageKind::kImu, -1));
+  FrameWriter writer(*row_of(MessageKind::kImu, kNoZone));
   writer.integer(kImuTime, message.sample_time_ms);
   write_vector(writer, kAngularVelocity, message.angular_velocity_rad_s);
   write_vector(writer, kAcceleration, message.acceleration_m_s2);
@@ -301,7 +308,7 @@ Result<void, CodecError> encode(const BasePose& message, SendContext& context,
   const std::array<double, 9> values{
       p.x(), p.y(), p.z(), message.yaw_rad, message.pitch_rad, message.roll_rad,
       v.x(), v.y(), v.z()};
-  FrameWriter writer(row_of(MessageKind::kBasePose, -1));
+  FrameWriter writer(*row_of(MessageKind::kBasePose, kNoZone));
   writer.integer(kPoseQuality, static_cast<std::int64_t>(message.quality));
   writer.integer(kPoseTime, message.sample_time_ms);
   for (int i = 0; i < 9; ++i) write_rated(writer, kPoseValues + i, values[i], message.quality);
@@ -326,7 +333,7 @@ Read decode(const CanFrame& frame, std::uint32_t session, BasePose& message) noe
 
 Result<void, CodecError> encode(const LockStep& message, SendContext& context,
                                 CanFrame& frame) noexcept {
-  FrameWriter writer(row_of(MessageKind::kLockStep, -1));
+  FrameWriter writer(*row_of(MessageKind::kLockStep, kNoZone));
   writer.integer(kFirstField, message.run_until_ms);
   return writer.finish(context, frame);
 }

@@ -28,8 +28,6 @@ std::uint16_t protection_crc(const MessageRow& row, const std::uint8_t* payload,
   return crc16(unsent, crc16(sent));
 }
 
-FrameWriter::FrameWriter(const MessageRow* row) noexcept : row_(row), refused_(row == nullptr) {}
-
 void FrameWriter::refuse(CodecError error) noexcept {
   if (!refused_) error_ = error;
   refused_ = true;

@@ -16,8 +16,7 @@ inline constexpr int kCrcField = 0, kCounterField = 1, kFirstField = 2;
 /// Collects a message's raw numbers; the first refusal is kept and returned by finish().
 class FrameWriter {
  public:
-  /// row == nullptr: there is no such message, finish() returns kUnknownId.
-  explicit FrameWriter(const MessageRow* row) noexcept;
+  explicit FrameWriter(const MessageRow& row) noexcept : row_(&row) {}
   void integer(int field, std::int64_t value) noexcept;
   void physical(int field, double value) noexcept;
   /// The raw number that stands for "no value". The field is signed (caller's duty).
@@ -30,7 +29,7 @@ class FrameWriter {
  private:
   const MessageRow* row_;
   std::array<std::int64_t, generated::kMaxSignals> raw_{};
-  CodecError error_ = CodecError::kUnknownId;
+  CodecError error_{};  ///< if refused
   bool refused_ = false;
 };
 
@@ -56,7 +55,7 @@ class FrameReader {
 
   const MessageRow* row_;
   std::array<std::int64_t, generated::kMaxSignals> raw_{};
-  CodecError error_ = CodecError::kUnknownId;
+  CodecError error_{};  ///< if refused
   bool refused_ = false;
 };
 
