@@ -13,6 +13,7 @@
 #include "models/terrain/raster_io.hpp"
 #include "models/terrain/synthetic.hpp"
 #include "tests/support/process.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace wex::can {
 namespace {
@@ -77,9 +78,6 @@ class MachineLog {
 class CanRun : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("wex_can_run_" + std::to_string(getpid()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
     const auto terrain = make_synthetic_terrain("flat", 0.0, 1);
     ASSERT_TRUE(terrain.has_value());
     ASSERT_TRUE(write_esri_ascii(terrain->raster, map()).has_value());
@@ -90,7 +88,6 @@ class CanRun : public ::testing::Test {
   void TearDown() override {
     host_.reset();
     machine_.reset();
-    fs::remove_all(folder_);
   }
 
   fs::path map() const { return folder_ / "map.asc"; }
@@ -165,7 +162,7 @@ class CanRun : public ::testing::Test {
     EXPECT_EQ(log.text("brakes", end - 1), "1");
   }
 
-  fs::path folder_;
+  ScratchFolder folder_{"can_run"};
   std::optional<CanSocket> socket_;
   std::optional<Process> machine_, host_;
   std::map<MessageKind, int> heard_;

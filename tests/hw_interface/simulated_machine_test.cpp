@@ -12,6 +12,7 @@
 
 #include "models/excavator/mjcf.hpp"
 #include "tests/hw_interface/test_ground.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace wex {
 namespace {
@@ -261,12 +262,12 @@ TEST(SimulatedMachine, MovesTheSameWayEveryTime) {
 
 TEST(SimulatedMachine, DrawsItselfIntoAPngFile) {
   const auto io = machine_on(flat_ground(), standing_on_plane(m545()));
-  const auto file = std::filesystem::temp_directory_path() / "wex_simulated_machine_test.png";
+  const ScratchFolder folder("picture");
+  const auto file = folder / "machine.png";
   const auto drawn = io->render(file.string(), 320, 200);
   ASSERT_TRUE(drawn) << drawn.error().message;
   std::ifstream stream(file, std::ios::binary);
   std::string png((std::istreambuf_iterator<char>(stream)), {});
-  std::filesystem::remove(file);
   ASSERT_GT(png.size(), 5000u) << "an empty scene compresses to less";
   EXPECT_EQ(png.substr(1, 3), "PNG");
   EXPECT_FALSE(io->render("/nowhere/at/all.png"));

@@ -8,6 +8,7 @@
 
 #include "tests/support/host_bench.hpp"
 #include "tests/support/machine_io_contract.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace wex {
 namespace {
@@ -18,7 +19,10 @@ std::shared_ptr<const MachineModel> machine() {
   return {&can::bench_machine(), [](const MachineModel*) {}};
 }
 
-std::string log_named(const std::string& name) { return ::testing::TempDir() + "wex_" + name; }
+std::string log_named(const std::string& name) {
+  static const ScratchFolder folder("replay");
+  return folder / name;
+}
 
 /// 40 s of a machine that is enabled and does nothing.
 std::string idle_log() {

@@ -6,21 +6,17 @@
 #include <fstream>
 
 #include "hw_interface/socketcan/frame_recorder.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace wex::can {
 namespace {
 
 class CandumpLog : public ::testing::Test {
  protected:
-  CandumpLog() {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    file_ = std::filesystem::temp_directory_path() /
-            (std::string("wex_candump_") + info->name() + ".log");
-  }
-  ~CandumpLog() override { std::filesystem::remove(file_); }
   void write(const std::string& text) { std::ofstream(file_) << text; }
 
-  std::filesystem::path file_;
+  ScratchFolder folder_{"candump"};
+  std::filesystem::path file_ = folder_ / "log";
 };
 
 LoggedFrame frame(std::uint32_t id, std::initializer_list<std::uint8_t> data, bool fd = true) {

@@ -6,6 +6,7 @@
 #include "tests/hw_interface/test_ground.hpp"
 #include "tests/support/host_bench.hpp"
 #include "tests/support/machine_io_contract.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace {
 std::atomic<long> num_allocations{0};
@@ -93,7 +94,8 @@ TEST(SocketCanMachineContract, ControlRateCallsDoNotAllocate) {
   {
     HostBench bench;
     bench.drive();
-    const std::string file = ::testing::TempDir() + "wex_prepared.log";
+    const ScratchFolder folder("prepared");
+    const std::string file = folder / "prepared.log";
     ASSERT_TRUE(bench.host->recorder().write(file));
     const auto log = read_candump_log(file);
     ASSERT_TRUE(log) << log.error().message;

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "models/excavator/machine_model.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace wex {
 namespace {
@@ -34,8 +35,6 @@ void expect_refused(const std::string& machine, const std::string& file, const s
 class DamagedMachine : public ::testing::Test {
  protected:
   DamagedMachine() {
-    const std::string test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    directory_ = std::filesystem::path(::testing::TempDir()) / ("wex_loader_" + test) / "m545";
     std::filesystem::create_directories(directory_);
     const auto original = load_machine("m545");
     EXPECT_TRUE(original) << original.error().message;
@@ -44,7 +43,6 @@ class DamagedMachine : public ::testing::Test {
     toml_ = contents(original->sidecar_path);
     write(urdf_, toml_);
   }
-  ~DamagedMachine() override { std::filesystem::remove_all(directory_.parent_path()); }
 
   void write(const std::string& urdf, const std::string& toml) const {
     std::ofstream(directory_ / "m545.urdf") << urdf;
@@ -67,7 +65,8 @@ class DamagedMachine : public ::testing::Test {
     expect_refused(directory_.string(), "m545.urdf", what);
   }
 
-  std::filesystem::path directory_;
+  ScratchFolder folder_{"loader"};
+  std::filesystem::path directory_ = folder_ / "m545";
   std::string urdf_, toml_;
 };
 
