@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "initializer/stepping/certificate.hpp"
+#include "models/types/plan.hpp"
+
+namespace wex {
+
+/// Where a certified sequence could not be turned into a motion of the whole body, and why.
+struct MotionFailure {
+  std::size_t state = 0;  ///< index into CertifiedSequence::states
+  std::string why;        ///< part of a sentence
+};
+
+/// How limbs move when they are not simply driving.
+struct SteppingMotionSettings {
+  double swing_clearance_m = 0.10;      ///< lifted tyres and links above the ground
+  double self_collision_m = 0.10;       ///< between limbs, and limb and chassis
+  double max_node_step_m = 0.2;         ///< of the base; limbs move at most 0.1 m (0.1 rad) a node
+  double bucket_approach_m = 0.3;       ///< the bucket comes down this far vertically ...
+  double bucket_lowering_m_s = 0.05;    ///< ... at this speed, and stands still for a moment
+  double contact_change_pause_s = 1.0;  ///< load is confirmed before the next limb is lifted
+  double rate_fraction = 0.8;           ///< of every joint's rate limit
+};
+
+/// Whole-body nodes of a certified sequence, timed from zero: wheels on their contacts by inverse
+/// kinematics, one contact change between successive nodes, lifted wheels and the arm along checked
+/// paths (ground, own limbs, stability), the bucket fixed in the world while it stands, cabin slews
+/// on four wheels. Durations obey joint, wheel, steering and pump limits.
+[[nodiscard]] Result<std::vector<WholeBodyNode>, MotionFailure> stepping_motion(
+    const TerrainMap& terrain, const MachineModel& machine, const PlanSettings& settings,
+    const CertifiedSequence& sequence, const SteppingMotionSettings& motion = {});
+
+}  // namespace wex
