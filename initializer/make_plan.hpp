@@ -12,8 +12,25 @@
 
 namespace wex {
 
+/// How a plan is made.
+enum class PlanMode {
+  kCertified,  ///< driving where it can, stepping by the layered graph where it must
+  kDriveOnly,  ///< on four wheels or not at all
+};
+
+/// Mechanisms that can be switched off to see what they are worth.
+struct PlanAblation {
+  bool certificate_first = true;  ///< the direct path is certified before anything is searched
+  bool alignment = true;          ///< RRT# heads squarely at what must be stepped over
+  bool blocking = true;           ///< places where certificates die are closed to later trees
+  bool certified_tree = true;     ///< the tree of certified four-wheel states as fallback
+};
+
 /// Defaults are the decisions' values; one set for every terrain.
 struct PlanSettings {
+  PlanMode mode = PlanMode::kCertified;
+  PlanAblation ablation;
+  double stepping_penalty = 1.0;  ///< factor on what stepping costs beside its way; 0: nothing
   double time_budget_s = 4.0;     ///< ignored when iterations is set
   std::optional<int> iterations;  ///< fixed number of planner iterations: deterministic by seed
   std::uint64_t seed = 1;
@@ -34,10 +51,13 @@ struct PlanProgress {
   std::optional<double> best_cost;
 };
 
-/// A driving plan from task.start to task.goal (local world frame).
+/// A plan from task.start to task.goal (local world frame): driving where it can, stepping where it
+/// must.
 ///   errors  kBadInput: start or goal off the map, on unknown ground, in an untraversable spot, not
 ///           finite; kNoPlan: nothing found within the budget, with what blocked it, counted
-///   source  RRT# over SE(2) with Reeds-Shepp curves, base pose by the paper's Algorithm 1
+///   source  RRT# over SE(2) with Reeds-Shepp curves, base pose by the paper's Algorithm 1;
+///   stepping
+///           by a layered graph along the path (stepping/certificate.hpp)
 [[nodiscard]] Result<Plan> make_plan(const TerrainMap& terrain, const MachineModel& machine,
                                      const Task& task, const PlanSettings& settings = {},
                                      const std::function<void(const PlanProgress&)>& observer = {});

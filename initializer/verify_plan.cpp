@@ -6,11 +6,14 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <vector>
 
 namespace wex {
 namespace {
 
 constexpr double kHeightToleranceM = 1e-3;
+constexpr double kBucketToleranceM = 0.02;
+constexpr double kBucketSlipM = 0.01;
 constexpr double kPoseTolerance = 1e-4;  // m and rad, at both ends
 constexpr double kRounding = 1e-6;       // relative or absolute slack for sums of doubles
 constexpr double kBellySpacingM = 0.2;
@@ -47,32 +50,54 @@ class Verifier {
         return with_number(joint.name + " beyond its limits:", value);
       }
     }
-    if (auto wheels = wheel_violation(verdict)) return wheels;
+    if (auto contact = contact_violation(node.contacts, verdict)) return contact;
     return belly_violation();
   }
 
+  // The bucket of a node that was just looked at.
+  [[nodiscard]] Eigen::Vector3d p_world_bucket() const {
+    return machine_.tree.position(workspace_, machine_.arm->contact_body,
+                                  machine_.arm->p_body_contact);
+  }
+
  private:
-  std::optional<std::string> wheel_violation(PlanVerdict& verdict) const {
-    std::array<Eigen::Vector2d, kNumWheels> contacts;
+  std::optional<std::string> contact_violation(const ContactFlags& contacts,
+                                               PlanVerdict& verdict) const {
+    std::vector<Eigen::Vector2d> support;
     for (std::size_t i = 0; i < kNumWheels; ++i) {
       const WheeledLeg& leg = machine_.legs[i];
       const std::string name = "wheel " + std::string(kLimbNames[i]);
       const Eigen::Vector3d p =
           machine_.tree.position(workspace_, leg.carrier_body, leg.p_carrier_wheel);
-      contacts[i] = p.head<2>();
-      if (!terrain_.known(contacts[i])) return name + " off the map or over unknown ground";
-      if (!terrain_.traversable_at(contacts[i])) return name + " on untraversable ground";
-      const double distance_m = terrain_.signed_distance_m(contacts[i]);
+      if (!terrain_.known(p.head<2>())) return name + " off the map or over unknown ground";
+      const double error_m = p.z() - leg.radius_m - terrain_.dilated_height_m(p.head<2>());
+      if (!contacts[i]) {
+        if (!(error_m >= -kHeightToleranceM)) {
+          return with_number("lifted " + name + " in the ground [m]:", error_m);
+        }
+        continue;
+      }
+      if (!terrain_.traversable_at(p.head<2>())) return name + " on untraversable ground";
+      const double distance_m = terrain_.signed_distance_m(p.head<2>());
       if (!(distance_m >= settings_.min_signed_distance_m - kRounding)) {
         return with_number(name + " close to untraversable ground [m]:", distance_m);
       }
-      const double error_m = p.z() - leg.radius_m - terrain_.dilated_height_m(contacts[i]);
       verdict.worst_height_error_m = std::max(verdict.worst_height_error_m, std::abs(error_m));
       if (!(std::abs(error_m) <= kHeightToleranceM)) {
         return with_number(name + " off the ground [m]:", error_m);
       }
+      support.push_back(p.head<2>());
     }
-    const double margin_m = polygon_margin(machine_.tree.com(workspace_).head<2>(), contacts);
+    if (contacts[static_cast<std::size_t>(Limb::kArm)]) {
+      const Eigen::Vector3d p = p_world_bucket();
+      const double error_m = p.z() - terrain_.height_m(p.head<2>());
+      if (!(std::abs(error_m) <= kBucketToleranceM)) {
+        return with_number("bucket off the ground [m]:", error_m);
+      }
+      support.push_back(p.head<2>());
+    }
+    if (support.size() < 3) return "fewer than three contacts";
+    const double margin_m = hull_margin(machine_.tree.com(workspace_).head<2>(), support);
     verdict.min_stability_margin_m = std::min(verdict.min_stability_margin_m, margin_m);
     if (!(margin_m >= settings_.min_stability_margin_m - kRounding)) {
       return with_number("stability margin [m]", margin_m);
@@ -81,16 +106,24 @@ class Verifier {
   }
 
   // By areas, unlike the planner's edge normals: distance = twice a triangle's area over its base.
-  static double polygon_margin(const Eigen::Vector2d& p,
-                               const std::array<Eigen::Vector2d, kNumWheels>& contacts) {
-    constexpr std::array<std::size_t, 5> kLoop{0, 2, 3, 1, 0};  // LF, LH, RH, RF: anticlockwise
-    double margin_m = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i + 1 < kLoop.size(); ++i) {
-      const Eigen::Vector2d& a = contacts[kLoop[i]];
-      const Eigen::Vector2d& b = contacts[kLoop[i + 1]];
+  // Edges of the hull are the pairs with every other contact to their left.
+  static double hull_margin(const Eigen::Vector2d& p,
+                            const std::vector<Eigen::Vector2d>& contacts) {
+    const auto twice_area = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                               const Eigen::Vector2d& c) {
       Eigen::Matrix2d sides;
-      sides << b - a, p - a;
-      margin_m = std::min(margin_m, sides.determinant() / (b - a).norm());
+      sides << b - a, c - a;
+      return sides.determinant();
+    };
+    double margin_m = std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector2d& a : contacts) {
+      for (const Eigen::Vector2d& b : contacts) {
+        if (&a == &b) continue;
+        const bool is_edge = std::all_of(contacts.begin(), contacts.end(), [&](const auto& c) {
+          return &c == &a || &c == &b || twice_area(a, b, c) >= 0.0;
+        });
+        if (is_edge) margin_m = std::min(margin_m, twice_area(a, b, p) / (b - a).norm());
+      }
     }
     return margin_m;
   }
@@ -123,6 +156,9 @@ std::optional<std::string> step_violation(const MachineModel& machine, const Who
                                           const WholeBodyNode& b, const PlanSettings& settings) {
   const double dt_s = b.t_s - a.t_s;
   if (!(dt_s > 0.0)) return "time does not increase";
+  int num_changes = 0;
+  for (std::size_t i = 0; i < kNumLimbs; ++i) num_changes += a.contacts[i] != b.contacts[i];
+  if (num_changes > 1) return "two contacts change at once";
   const double step_m = (b.q - a.q).head<2>().norm();
   if (step_m > settings.subnode_spacing_m + kRounding) {
     return with_number("distance to the next node [m]", step_m);
@@ -155,8 +191,18 @@ PlanVerdict verify_plan(const TerrainMap& terrain, const MachineModel& machine, 
   };
   if (plan.nodes.empty()) return reject(0, "there is none");
   Verifier verifier(terrain, machine, settings);
+  std::optional<Eigen::Vector3d> bucket;  // where it stands
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
     if (auto what = verifier.violation(plan.nodes[i], verdict)) return reject(i, *std::move(what));
+    if (plan.nodes[i].contacts[static_cast<std::size_t>(Limb::kArm)]) {
+      const Eigen::Vector3d p = verifier.p_world_bucket();
+      if (bucket && (p - *bucket).norm() > kBucketSlipM) {
+        return reject(i, with_number("the standing bucket moves [m]:", (p - *bucket).norm()));
+      }
+      if (!bucket) bucket = p;
+    } else {
+      bucket.reset();
+    }
     if (i == 0) continue;
     if (auto what = step_violation(machine, plan.nodes[i - 1], plan.nodes[i], settings)) {
       return reject(i, *std::move(what));

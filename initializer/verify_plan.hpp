@@ -19,8 +19,9 @@ struct PlanVerdict {
 };
 
 /// Checks every node of a plan through the machine's full kinematics, sharing no code with the
-/// search: joint limits, wheels on known and traversable ground at the right height, tilt,
-/// clearance under the chassis, stability; between nodes: spacing, joint rates, increasing time;
+/// search: joint limits, scheduled contacts on known and traversable ground at the right height,
+/// lifted wheels above it, tilt, clearance under the chassis, stability; between nodes: spacing,
+/// joint rates, increasing time, one contact change at a time, a bucket that stays where it stands;
 /// both ends against the task. Runs on every plan before it is returned.
 [[nodiscard]] PlanVerdict verify_plan(const TerrainMap& terrain, const MachineModel& machine,
                                       const Plan& plan, const PlanSettings& settings = {});

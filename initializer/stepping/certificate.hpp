@@ -90,7 +90,8 @@ class Certifier {
       const DrivePath& path, const std::optional<BaseCoordinates>& begin = std::nullopt) const;
 
   /// Like certify, but a path that cannot be followed to its end gives the sequence up to its last
-  /// four-wheel state; nullopt if that is not beyond `min_progress_m`.
+  /// four-wheel state, path and stations cut there; nullopt if that is not beyond
+  /// `min_progress_m`.
   [[nodiscard]] std::optional<CertifiedSequence> certify_prefix(
       const DrivePath& path, double min_progress_m,
       const std::optional<BaseCoordinates>& begin = std::nullopt) const;

@@ -1,0 +1,38 @@
+#include "initializer/search_census.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace wex {
+
+std::string SearchCensus::sentence() const {
+  std::vector<std::pair<std::uint64_t, std::string>> reasons;
+  for (std::size_t i = 1; i < kNumRejections; ++i) {
+    if (rejections_[i] > 0)
+      reasons.emplace_back(rejections_[i], describe(static_cast<Rejection>(i)));
+  }
+  if (num_blocked_ > 0) reasons.emplace_back(num_blocked_, "near a place where a path failed");
+  if (num_unsupported_ > 0) {
+    reasons.emplace_back(num_unsupported_, "no wheels and bucket to stand on");
+  }
+  if (num_askew_ > 0)
+    reasons.emplace_back(num_askew_, "heading askew at what must be stepped over");
+  std::sort(reasons.rbegin(), reasons.rend());
+  std::uint64_t num_rejected = 0;
+  for (const auto& reason : reasons) num_rejected += reason.first;
+
+  std::string text = std::to_string(num_rejected) + " of " + std::to_string(num_poses_) +
+                     " poses tried were rejected";
+  for (std::size_t i = 0; i < reasons.size(); ++i) {
+    text += (i == 0 ? ": " : ", ") + reasons[i].second + " " +
+            std::to_string(100 * reasons[i].first / num_rejected) + " %";
+  }
+  if (!failed_paths_.empty()) {
+    text += "; " + std::to_string(failed_paths_.size()) +
+            " path(s) could not be followed with the whole body, the last because " +
+            failed_paths_.back().why;
+  }
+  return text;
+}
+
+}  // namespace wex

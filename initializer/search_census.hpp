@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "initializer/pose_check.hpp"
+#include "models/types/pose.hpp"
+
+namespace wex {
+
+/// A path that a search found and the whole body could not follow.
+struct FailedPath {
+  Pose2 where;
+  std::string why;  ///< part of a sentence
+  bool stepping = false;
+};
+
+/// Everything that was turned down during one search, for the sentence that says why there is no
+/// plan.
+class SearchCensus {
+ public:
+  void count_pose() noexcept { ++num_poses_; }
+  void count(Rejection rejection) noexcept { ++rejections_[static_cast<std::size_t>(rejection)]; }
+  void count_blocked() noexcept { ++num_blocked_; }
+  void count_unsupported() noexcept { ++num_unsupported_; }
+  void count_askew() noexcept { ++num_askew_; }
+  void add(FailedPath path) { failed_paths_.push_back(std::move(path)); }
+
+  [[nodiscard]] const std::vector<FailedPath>& failed_paths() const noexcept {
+    return failed_paths_;
+  }
+  /// "162630 of 273376 poses tried were rejected: ... 56 %, ...; 3 path(s) could not be
+  /// followed..."
+  [[nodiscard]] std::string sentence() const;
+
+ private:
+  std::uint64_t num_poses_ = 0, num_blocked_ = 0, num_unsupported_ = 0, num_askew_ = 0;
+  std::array<std::uint64_t, kNumRejections> rejections_{};
+  std::vector<FailedPath> failed_paths_;
+};
+
+}  // namespace wex
