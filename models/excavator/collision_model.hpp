@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,9 @@
 namespace wex {
 
 /// The machine's shape for distance queries: capsules (spheres are capsules of no length) fixed to
-/// bodies of the kinematic tree. They contain every collision shape of the machine's URDF, wheels
-/// and bucket included. Immutable; concurrent queries are safe.
+/// bodies of the kinematic tree. They contain every shape of the machine that takes up space, those
+/// that collide in its MuJoCo model among them; wheels are fixed to what carries them, as turning
+/// does not move a disc. Immutable; concurrent queries are safe.
 class CollisionModel {
  public:
   enum class Part { kChassis, kCabin, kLF, kRF, kLH, kRH, kArm };
@@ -23,7 +25,7 @@ class CollisionModel {
     double radius_m = 0.0;
     bool load_bearing = false;  ///< wheel or bucket: may touch the ground
   };
-  /// Distance between two capsules of different parts that may collide.
+  /// Two capsules that may collide: of different parts, or far enough apart along the arm.
   struct Pair {
     int first = -1, second = -1;  ///< capsules
   };
@@ -35,7 +37,7 @@ class CollisionModel {
   [[nodiscard]] static CollisionModel build(const MachineModel& machine);
 
   [[nodiscard]] const std::vector<Capsule>& capsules() const noexcept { return capsules_; }
-  /// Neighbouring links and pairs that touch in the default posture are left out.
+  /// Neighbouring links and shapes that touch in the default posture are left out.
   [[nodiscard]] const std::vector<Pair>& pairs() const noexcept { return pairs_; }
 
   /// The smallest distance of all pairs (those of one part against the rest, if given). Stops early
@@ -45,8 +47,15 @@ class CollisionModel {
   [[nodiscard]] Proximity nearest(const KinematicTree::Workspace& w, Part part,
                                   double stop_below_m = -1e9) const noexcept;
 
-  /// Distance of one pair and its exact gradient by q (num_coordinates, overwritten); at parallel
-  /// axes one of the subgradients.
+  /// Whether every distance is at least `margin_m`: faster than nearest, as what is farther is
+  /// never looked at. No allocation.
+  [[nodiscard]] bool clear(const KinematicTree::Workspace& w, double margin_m) const noexcept;
+  [[nodiscard]] bool clear(const KinematicTree::Workspace& w, Part part,
+                           double margin_m) const noexcept;
+
+  /// Distance of one pair, without and with its exact gradient by q (num_coordinates, overwritten);
+  /// at parallel axes one of the subgradients, zero where axes cross. No allocation.
+  [[nodiscard]] double distance(const KinematicTree::Workspace& w, const Pair& pair) const noexcept;
   [[nodiscard]] double distance(const KinematicTree& tree, const KinematicTree::Workspace& w,
                                 const Pair& pair, Eigen::Ref<Eigen::VectorXd> gradient) const;
 
@@ -57,8 +66,27 @@ class CollisionModel {
                                           double spacing_m, const Ground& height_at) const;
 
  private:
+  /// Capsules of one shape, within a ball.
+  struct Shape {
+    int body = -1;
+    Part part{};
+    int first = 0, last = 0;  ///< capsules
+    Eigen::Vector3d p_body_centre;
+    double radius_m = 0.0;
+  };
+  struct ShapePair {
+    int first = -1, second = -1;  ///< shapes
+    int first_pair = 0;           ///< of pairs_; the rest follow, second's capsules fastest
+  };
+  class Query;
+
+  void add_shapes(const MachineModel& machine);
+  void add_pairs(const MachineModel& machine);
+
   std::vector<Capsule> capsules_;
   std::vector<Pair> pairs_;
+  std::vector<Shape> shapes_;
+  std::vector<ShapePair> shape_pairs_;
 };
 
 template <typename Ground>

@@ -26,9 +26,6 @@ constexpr double kContinuousRange = 1e4;   ///< rad: an integrator needs some bo
 constexpr double kTyreTravel_m = 0.15;
 constexpr double kParallelogramSolref[2] = {0.004, 1.0};
 constexpr double kParallelogramSolimp[3] = {0.99, 0.999, 0.001};
-constexpr double kLongBeam_m = 0.5;  ///< leg and arm links longer than this can touch the ground
-constexpr double kShortestBeam_m = 0.05, kTelescopeInside_m = 1.2;
-constexpr double kArmHalfThickness_m = 0.14, kLegHalfThickness_m = 0.1;
 
 template <typename Vector>
 void copy3(const Vector& from, double* to) {
@@ -47,11 +44,14 @@ void copy_quaternion(const Eigen::Matrix3d& R, double* to) {
 class SpecBuilder {
  public:
   SpecBuilder(const MachineModel& machine, mjSpec* spec)
-      : machine_(machine), bodies_(machine.tree.bodies()), spec_(spec) {}
+      : machine_(machine),
+        bodies_(machine.tree.bodies()),
+        shapes_(shapes::link_shapes(machine)),
+        spec_(spec) {}
 
   void build() {
     set_options();
-    add_body(0, mjs_findBody(spec_, "world"), Eigen::Matrix3d::Identity());
+    add_body(0, mjs_findBody(spec_, "world"));
     add_passive_couplings();
     for (const Joint& joint : machine_.joints) add_actuator(joint);
     add_sensors();
@@ -83,13 +83,12 @@ class SpecBuilder {
     return leg == machine_.legs.end() ? nullptr : &*leg;
   }
 
-  /// One body and everything beyond it, depth first. R_base_parent: with all joints at zero.
-  void add_body(int index, mjsBody* parent, const Eigen::Matrix3d& R_base_parent) {
+  /// One body and everything beyond it, depth first.
+  void add_body(int index, mjsBody* parent) {
     const KinematicTree::Body& source = bodies_[index];
     const WheeledLeg* leg = leg_of_wheel(index);
     mjsBody* body = mjs_addBody(parent, nullptr);
     mjs_setName(body->element, source.name.c_str());
-    const Eigen::Matrix3d R_base_body = R_base_parent * source.T_parent_joint.linear();
     if (index > 0) {
       copy3(leg ? leg->p_carrier_wheel_unloaded : source.T_parent_joint.translation().eval(),
             body->pos);
@@ -103,8 +102,9 @@ class SpecBuilder {
     } else if (source.coordinate >= 0) {
       add_joint(index, body);
     }
-    add_shapes(index, R_base_body, body);
-    for (const int child : children_of(index)) add_body(child, body, R_base_body);
+    for (const shapes::Shape& shape : shapes_[index]) shapes::add_geom(body, shape);
+    if (machine_.arm && machine_.arm->contact_body == index) add_arm_site(body);
+    for (const int child : children_of(index)) add_body(child, body);
   }
 
   std::vector<int> children_of(int index) const {
@@ -174,76 +174,12 @@ class SpecBuilder {
     mjsSite* site = mjs_addSite(body, nullptr);
     mjs_setName(site->element, wheel_site_name(leg.limb).c_str());
     copy_quaternion(R_wheel_site, site->quat);
-    shapes::add_wheel(body, axle, leg.radius_m, leg.half_width_m);
   }
 
-  void add_shapes(int index, const Eigen::Matrix3d& R_base_body, mjsBody* body) {
-    const Joint* joint = actuated(index);
-    const bool arm = joint && joint->role == JointRole::kArm;
-    if (index == 0) {
-      shapes::add_chassis(body, machine_.belly_min_m, machine_.belly_max_m,
-                          machine_.belly_below_base_m, turn_height_m());
-    } else if (arm && is_turn(*joint)) {
-      shapes::add_upper_carriage(body);
-    } else {
-      const Eigen::Vector3d up = R_base_body.transpose().col(2);
-      for (const int child : children_of(index)) add_beam(index, child, arm, up, body);
-      if (children_of(index).empty() && !leg_of_wheel(index)) add_end_rod(index, up, body);
-    }
-    if (machine_.arm && machine_.arm->contact_body == index) add_arm_contact(R_base_body, body);
-  }
-
-  /// From a link's joint to the next one along the limb.
-  void add_beam(int index, int child, bool arm, const Eigen::Vector3d& up, mjsBody* body) {
-    const KinematicTree::Body& source = bodies_[index];
-    const Eigen::Vector3d end = bodies_[child].T_parent_joint.translation();
-    // A telescope slides out of the link before it.
-    const Eigen::Vector3d start =
-        (source.prismatic ? -kTelescopeInside_m : 0.0) * source.axis.normalized();
-    const double length_m = (end - start).norm();
-    if (length_m < kShortestBeam_m || bodies_[child].coordinate < 0) return;
-    const bool thin = source.prismatic || length_m < kLongBeam_m;
-    const shapes::Colour colour = !thin ? shapes::kYellow : arm ? shapes::kSteel : shapes::kGrey;
-    const double half_m = (arm ? kArmHalfThickness_m : kLegHalfThickness_m) * (thin ? 0.75 : 1.0);
-    const Joint* next = actuated(child);
-    const bool collides = length_m >= kLongBeam_m && !(next && next->role == JointRole::kAuxiliary);
-    shapes::add_beam(body, start, end, up, 1.2 * half_m, half_m, colour, collides);
-  }
-
-  /// Something at a limb's end, a claw: a rod through its centre of mass.
-  void add_end_rod(int index, const Eigen::Vector3d& up, mjsBody* body) {
-    const Eigen::Vector3d& com = bodies_[index].p_body_com;
-    if (com.norm() < kShortestBeam_m) return;
-    shapes::add_beam(body, Eigen::Vector3d::Zero(), 1.8 * com, up, 0.06, 0.06, shapes::kSteel,
-                     false);
-  }
-
-  bool is_turn(const Joint& joint) const {
-    return machine_.arm && !machine_.arm->coordinates.empty() &&
-           &joint == &machine_.joints[machine_.arm->coordinates.front() - kNumBaseCoordinates];
-  }
-
-  double turn_height_m() const {
-    for (const Joint& joint : machine_.joints) {
-      if (is_turn(joint)) return bodies_[joint.body].T_parent_joint.translation().z();
-    }
-    return 0.0;
-  }
-
-  void add_arm_contact(const Eigen::Matrix3d& R_base_body, mjsBody* body) {
-    const Eigen::Vector3d& p_contact = machine_.arm->p_body_contact;
+  void add_arm_site(mjsBody* body) {
     mjsSite* site = mjs_addSite(body, nullptr);
     mjs_setName(site->element, kArmContactSite);
-    copy3(p_contact, site->pos);
-    const Eigen::Vector3d side = R_base_body.transpose().col(1);
-    const Eigen::Vector3d down = -R_base_body.transpose().col(2);
-    // Mounted at the last joint before it.
-    Eigen::Isometry3d T_contact_joint = Eigen::Isometry3d::Identity();
-    for (int i = machine_.arm->contact_body; i > 0 && bodies_[i].coordinate < 0;
-         i = bodies_[i].parent) {
-      T_contact_joint = T_contact_joint * bodies_[i].T_parent_joint.inverse();
-    }
-    shapes::add_bucket(body, p_contact, T_contact_joint.translation(), side, down);
+    copy3(machine_.arm->p_body_contact, site->pos);
   }
 
   void add_passive_couplings() {
@@ -310,6 +246,7 @@ class SpecBuilder {
 
   const MachineModel& machine_;
   const std::vector<KinematicTree::Body>& bodies_;
+  std::vector<std::vector<shapes::Shape>> shapes_;  ///< by body
   mjSpec* spec_;
 };
 
