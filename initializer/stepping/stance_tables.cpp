@@ -1,0 +1,121 @@
+#include "initializer/stepping/stance_tables.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "initializer/leg_table.hpp"
+
+namespace wex {
+namespace {
+
+constexpr double kJointMarginRad = 0.02;  // keeps hip flexion off its end stops
+constexpr int kNumSlewYaws = 24;
+
+// Bodies from the base's child to `body`, base side first.
+std::vector<int> chain_to(const KinematicTree& tree, int body) {
+  std::vector<int> chain;
+  for (int b = body; b > 0; b = tree.bodies()[static_cast<std::size_t>(b)].parent) {
+    chain.insert(chain.begin(), b);
+  }
+  return chain;
+}
+
+}  // namespace
+
+Steered steered_for(double curvature_1_m, double min_turning_radius_m) noexcept {
+  const double share = curvature_1_m * min_turning_radius_m;
+  return share > 0.5 ? Steered::kLeft : (share < -0.5 ? Steered::kRight : Steered::kStraight);
+}
+
+Result<StanceTables> StanceTables::build(const MachineModel& machine) {
+  auto leg_tables = build_leg_tables(machine);
+  if (!leg_tables) return tl::unexpected<Error>(leg_tables.error());
+  const KinematicTree& tree = machine.tree;
+  KinematicTree::Workspace w = tree.make_workspace();
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(machine.num_coordinates());
+  q.tail(machine.num_joints()) = machine.transport_posture();
+
+  StanceTables tables;
+  tables.mass_kg = tree.total_mass_kg();
+  tables.belly_min_m = machine.belly_min_m;
+  tables.belly_max_m = machine.belly_max_m;
+  tables.belly_below_base_m = machine.belly_below_base_m;
+  tables.default_base_height_m = machine.default_base_height_m;
+  tables.min_turning_radius_m = machine.min_turning_radius_m;
+
+  std::array<std::vector<int>, kNumWheels> chains;
+  std::array<bool, kNumWheels> upper_is_high{};
+  for (std::size_t i = 0; i < kNumWheels; ++i) {
+    const WheeledLeg& leg = machine.legs[i];
+    const LegTable& table = (*leg_tables)[i];
+    chains[i] = chain_to(tree, leg.carrier_body);
+    upper_is_high[i] = table.p_base_wheel(table.hfe_upper_rad(), {}).z() >
+                       table.p_base_wheel(table.hfe_lower_rad(), {}).z();
+    tables.radius_m[i] = leg.radius_m;
+    tables.half_width_m[i] = leg.half_width_m;
+    tables.sag_m[i] = leg.static_sag_m;
+  }
+  for (std::size_t k = 0; k < kNumSteered; ++k) {
+    const double curvature_1_m = (static_cast<double>(k) - 1.0) / machine.min_turning_radius_m;
+    for (std::size_t n = 0; n < LegSweep::kSamples; ++n) {
+      const double share = static_cast<double>(n) / (LegSweep::kSamples - 1);
+      std::array<double, kNumWheels> hfe{};
+      for (std::size_t i = 0; i < kNumWheels; ++i) {
+        const WheeledLeg& leg = machine.legs[i];
+        const LegTable& table = (*leg_tables)[i];
+        const double low = table.hfe_lower_rad() + kJointMarginRad,
+                     high = table.hfe_upper_rad() - kJointMarginRad;
+        hfe[i] = upper_is_high[i] ? std::lerp(high, low, share) : std::lerp(low, high, share);
+        q[leg.hfe] = hfe[i];
+        if (leg.steer >= 0) q[leg.steer] = table.steering_rad(hfe[i], curvature_1_m);
+      }
+      tree.update(q, w);
+      for (std::size_t i = 0; i < kNumWheels; ++i) {
+        const WheeledLeg& leg = machine.legs[i];
+        LegSweep& sweep = tables.legs[i][k];
+        LegSample& sample = sweep.samples[n];
+        sample.hfe_rad = hfe[i];
+        sample.p_base_wheel = tree.position(w, leg.carrier_body, leg.p_carrier_wheel);
+        sample.axle_base = tree.direction(w, leg.carrier_body, leg.axle_carrier);
+        sample.moment_base = w.subtree_mass_times_com[static_cast<std::size_t>(chains[i].front())];
+        sweep.num_beam_points =
+            std::min(LegSample::kMaxBeamPoints, static_cast<int>(chains[i].size()));
+        for (int b = 0; b < sweep.num_beam_points; ++b) {
+          // The outermost hinges, if there are more than fit.
+          const std::size_t at = chains[i].size() - sweep.num_beam_points + b;
+          sample.p_base_beam[static_cast<std::size_t>(b)] =
+              w.p_world_joint[static_cast<std::size_t>(chains[i][at])];
+        }
+      }
+    }
+  }
+
+  // Cabin and arm: everything that turns with the first arm joint.
+  tables.moment_chassis_base = tables.mass_kg * tree.com(w);
+  for (std::size_t i = 0; i < kNumWheels; ++i) {
+    tables.moment_chassis_base -=
+        tables.legs[i][kNumSteered - 1].samples[LegSweep::kSamples - 1].moment_base;
+  }
+  if (!machine.arm) {
+    tables.moment_folded_base.emplace_back(Eigen::Vector3d::Zero());
+    tables.moment_transport_base = tables.moment_folded_base;
+    return tables;
+  }
+  const int turn = machine.arm->coordinates.front();
+  const int cabin = machine.joints[static_cast<std::size_t>(turn - kNumBaseCoordinates)].body;
+  tables.moment_chassis_base -= w.subtree_mass_times_com[static_cast<std::size_t>(cabin)];
+  const double transport_turn_rad = q[turn];
+  for (int y = 0; y < kNumSlewYaws; ++y) {
+    q[turn] = transport_turn_rad + 2.0 * std::numbers::pi * y / kNumSlewYaws;
+    tree.update(q, w);
+    tables.moment_folded_base.push_back(w.subtree_mass_times_com[static_cast<std::size_t>(cabin)]);
+  }
+  tables.moment_transport_base = {tables.moment_folded_base.front()};
+  if (const auto plane = ArmPlane::of(machine)) {
+    tables.arm = ArmTable(*plane);
+    tables.counter_weights = make_counter_weights(machine, *plane);
+  }
+  return tables;
+}
+
+}  // namespace wex
