@@ -10,6 +10,7 @@
 #include "tools/bench/kinematics_bench.hpp"
 #include "tools/bench/mpc_bench.hpp"
 #include "tools/bench/terrain_bench.hpp"
+#include "tools/check/check_command.hpp"
 #include "tools/wex/can_command.hpp"
 #include "tools/wex/machine_command.hpp"
 #include "tools/wex/output_folder.hpp"
@@ -42,6 +43,7 @@ struct Options {
   MachineOptions can_machine;
   CanOptions can;
   ReplayOptions replay;
+  check::CheckOptions check;
 };
 
 template <typename Parse>
@@ -256,6 +258,25 @@ void add_replay(CLI::App& app, ReplayOptions& replay) {
   add_machine(command, replay.machine);
 }
 
+void add_check(CLI::App& app, check::CheckOptions& check) {
+  CLI::App& command = *app.add_subcommand(
+      "check", "Judge a motion by its files alone, apart from the code that planned it");
+  command.footer(
+      "Reads model.xml, result.json and the CSV in DIR. Exit codes: 0 accepted, 2 bad input,\n"
+      "5 violations.");
+  command.add_option("dir", check.folder, "Folder that wex plan or wex run wrote")
+      ->type_name("DIR")
+      ->required();
+  command.add_option("map", check.map, "Elevation map it was made for")
+      ->type_name("MAP")
+      ->required();
+  command.add_option("--what", check.what, "plan, refined or executed: which CSV")
+      ->type_name("KIND")
+      ->capture_default_str();
+  command.add_option("--json", check.json, "Write the findings here too")->type_name("FILE");
+  command.add_flag("--all", check.all, "List also rules that nothing was subject to");
+}
+
 void add_bench(CLI::App& app, DriveBenchOptions& drive, CanBenchOptions& can) {
   CLI::App& command = *app.add_subcommand("bench", "Measure: medians and percentiles on stdout");
   command.require_subcommand(1);
@@ -407,6 +428,7 @@ int run_cli(int argc, const char* const* argv, std::ostream& out, std::ostream& 
   add_can_machine(app, options.can_machine);
   add_can(app, options.can);
   add_replay(app, options.replay);
+  add_check(app, options.check);
   if (const auto problem = unknown_command(app, argc, argv)) {
     return refuse(err, {ErrorCode::kBadInput, *problem + " (see wex --help)"});
   }
@@ -426,6 +448,10 @@ int run_cli(int argc, const char* const* argv, std::ostream& out, std::ostream& 
   if (name == "terrain") return terrain_command(options.terrain, out, err);
   if (name == "model") return model_command(options.model, out, err);
   if (name == "bench") return bench_command(command, options, out, err);
+  if (name == "check") {
+    const Result<int> code = check::run_check(options.check, out);
+    return code ? *code : refuse(err, code.error());
+  }
   if (name == "can") {
     const Result<void> done = run_can(options.can, out);
     return done ? 0 : refuse(err, done.error());
