@@ -247,8 +247,19 @@ void LayeredGraph::push(std::int32_t index, float cost, std::int32_t parent, boo
 void LayeredGraph::push_start(bool from_nominal) {
   const PathLayer& first = grid_->layers.front();
   if (!from_nominal) {
-    const std::int32_t record = record_at(0, 0, 0);
-    if (record >= 0) push(node_at(record, 0, -1), 0.0F, -1, false);
+    // Where the machine stands already, plain clearances do.
+    const std::int32_t index = record_at(0, 0, 0);
+    if (index < 0) return;
+    Record& record = records_[static_cast<std::size_t>(index)];
+    const BaseFrame base = frame_of(record);
+    record.stance = check_->stance(base, first.steered, plain_, first.ground_top_m);
+    record.judged = true;
+    const std::int32_t node = node_at(index, 0, -1);
+    nodes_[static_cast<std::size_t>(node)].feasible =
+        record.stance.allows(0) && check_->margin_on_wheels(base, record.stance) >= min_margin_m_
+            ? 1
+            : 0;
+    push(node, 0.0F, -1, false);
     return;
   }
   for (int z = first.first_z; z < first.first_z + first.num_z; ++z) {
