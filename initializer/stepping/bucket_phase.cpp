@@ -1,0 +1,238 @@
+#include "initializer/stepping/bucket_phase.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace wex {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kMaxRounds = 40;
+constexpr double kMarginWeight = 200.0;  // per m^2 short of comfort, against squared rate shares
+constexpr double kSecondsPerKnot = 1.5;  // what the machine takes from knot to knot, about
+constexpr double kArmRadiusM = 0.25, kBucketRadiusM = 0.15;
+constexpr double kBucketShare = 0.7;  // of the way from wrist to edge: the rest may touch
+
+struct Cell {
+  ArmPosture posture;
+  double node_cost = kInfinity;
+  bool judged = false;
+};
+
+bool above_ground(const StanceGround& ground, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                  double radius_m) {
+  constexpr int kPieces = 4;
+  for (int k = 0; k <= kPieces; ++k) {
+    const Eigen::Vector3d p = a + (b - a) * (static_cast<double>(k) / kPieces);
+    if (p.z() - radius_m < ground.highest_m(p.x(), p.y())) return false;
+  }
+  return true;
+}
+
+// Dynamic programming over knots x telescope x attitude.
+class Programme {
+ public:
+  Programme(const ArmKinematics& arm, const StanceGround& ground,
+            const Eigen::Vector3d& p_world_bucket, const BucketPathSettings& settings)
+      : arm_(arm), ground_(ground), p_world_bucket_(p_world_bucket), settings_(settings) {
+    const double lower = std::max(0.0, arm.lower()[3]) + 0.02, upper = arm.upper()[3] - 0.02;
+    const int num_tele = static_cast<int>((upper - lower) / settings.tele_step_m) + 1;
+    for (int i = 0; i < num_tele; ++i) {
+      tele_.push_back(lower + (upper - lower) * i / std::max(1, num_tele - 1));
+    }
+    const int half = static_cast<int>(settings.max_attitude_rad / settings.attitude_step_rad + 0.5);
+    for (int i = -half; i <= half; ++i) attitude_.push_back(i * settings.attitude_step_rad);
+  }
+
+  [[nodiscard]] std::size_t num_cells() const { return tele_.size() * attitude_.size(); }
+  [[nodiscard]] double tele(std::size_t cell) const { return tele_[cell / attitude_.size()]; }
+  [[nodiscard]] double attitude(std::size_t cell) const {
+    return attitude_[cell % attitude_.size()];
+  }
+
+  // Margin of the worse footing; -infinity where the posture is impossible.
+  double margin(const BucketStance& stance, const ArmPosture& posture) const {
+    const Eigen::Vector3d moment = arm_.moment_base(posture);
+    double margin_m = stance.footing.margin_m(moment);
+    if (stance.on_wheels) margin_m = std::min(margin_m, stance.on_wheels->margin_m(moment));
+    if (margin_m < settings_.min_margin_m) return margin_m;
+    const Eigen::Isometry3d& T = stance.footing.T_world_base;
+    const ArmKinematics::Shape shape = arm_.shape(posture);
+    const Eigen::Vector3d wrist = T * shape.p_base_wrist;
+    if (!above_ground(ground_, T * shape.p_base_elbow, wrist, kArmRadiusM) ||
+        !above_ground(ground_, wrist, wrist + kBucketShare * (p_world_bucket_ - wrist),
+                      kBucketRadiusM)) {
+      return -kInfinity;
+    }
+    return margin_m;
+  }
+
+  [[nodiscard]] double node_cost(double margin_m) const {
+    if (margin_m < settings_.min_margin_m) return kInfinity;
+    return kMarginWeight * square(std::max(0.0, settings_.comfortable_margin_m - margin_m));
+  }
+
+  void fill(const BucketStance& stance, Cell* cells) const {
+    const Eigen::Vector3d p_base = stance.footing.T_world_base.inverse() * p_world_bucket_;
+    for (std::size_t c = 0; c < num_cells(); ++c) {
+      const auto posture = arm_.reach(p_base, tele(c), attitude(c));
+      if (!posture) continue;
+      cells[c].posture = *posture;
+      cells[c].node_cost = node_cost(margin(stance, *posture));
+    }
+  }
+
+  // The number of knots that can be reached; the way only if that is all of them.
+  std::size_t cheapest_way(const std::vector<Cell>& table, std::size_t knots,
+                           std::vector<std::size_t>& way) const {
+    const std::size_t n = num_cells();
+    std::vector<double> cost(n), next(n);
+    std::vector<int> from(knots * n, -1);
+    for (std::size_t i = 0; i < knots; ++i) {
+      bool alive = false;
+      for (std::size_t c = 0; c < n; ++c) {
+        const Cell& cell = table[i * n + c];
+        next[c] = i == 0 ? cell.node_cost : kInfinity;
+        if (i > 0 && cell.node_cost < kInfinity) {
+          for_each_neighbour(c, [&](std::size_t b) {
+            if (cost[b] == kInfinity) return;
+            const double total = cost[b] + cell.node_cost +
+                                 move_cost(table[(i - 1) * n + b].posture, cell.posture);
+            if (total >= next[c]) return;
+            next[c] = total;
+            from[i * n + c] = static_cast<int>(b);
+          });
+        }
+        alive |= next[c] < kInfinity;
+      }
+      if (!alive) return i;
+      std::swap(cost, next);
+    }
+    way.resize(knots);
+    way.back() = static_cast<std::size_t>(std::min_element(cost.begin(), cost.end()) - cost.begin());
+    for (std::size_t i = knots - 1; i > 0; --i) {
+      way[i - 1] = static_cast<std::size_t>(from[i * n + way[i]]);
+    }
+    return knots;
+  }
+
+ private:
+  [[nodiscard]] static double square(double x) { return x * x; }
+
+  [[nodiscard]] double move_cost(const ArmPosture& a, const ArmPosture& b) const {
+    const auto from = ArmKinematics::joints_of(a), to = ArmKinematics::joints_of(b);
+    double cost = 0.0;
+    for (std::size_t k = 1; k < from.size(); ++k) {
+      cost += square((to[k] - from[k]) / (arm_.max_rate()[k] * kSecondsPerKnot));
+    }
+    return cost;
+  }
+
+  template <typename Visit>
+  void for_each_neighbour(std::size_t cell, const Visit& visit) const {
+    const int columns = static_cast<int>(attitude_.size()), rows = static_cast<int>(tele_.size());
+    const int row = static_cast<int>(cell) / columns, column = static_cast<int>(cell) % columns;
+    for (int r = std::max(0, row - 1); r <= std::min(rows - 1, row + 1); ++r) {
+      for (int c = std::max(0, column - 1); c <= std::min(columns - 1, column + 1); ++c) {
+        visit(static_cast<std::size_t>(r * columns + c));
+      }
+    }
+  }
+
+  const ArmKinematics& arm_;
+  const StanceGround& ground_;
+  Eigen::Vector3d p_world_bucket_;
+  BucketPathSettings settings_;
+  std::vector<double> tele_, attitude_;
+};
+
+// Averages the staircase of cells, as far as every knot still holds.
+void smooth_samples(const Programme& programme, const ArmKinematics& arm, const PostureJudge& judge,
+                    const std::vector<BucketStance>& stances,
+                    const Eigen::Vector3d& p_world_bucket, double min_margin_m,
+                    std::vector<BucketPath::Sample>& samples) {
+  constexpr int kRounds = 8;
+  for (int round = 0; round < kRounds; ++round) {
+    bool changed = false;
+    for (std::size_t i = 1; i + 1 < samples.size(); ++i) {
+      const BucketPath::Sample& a = samples[i - 1];
+      const BucketPath::Sample& b = samples[i + 1];
+      const double share = (samples[i].sigma_m - a.sigma_m) / (b.sigma_m - a.sigma_m);
+      const double tele_m = 0.5 * (samples[i].tele_m + a.tele_m + share * (b.tele_m - a.tele_m));
+      const double attitude_rad = 0.5 * (samples[i].attitude_rad + a.attitude_rad +
+                                         share * (b.attitude_rad - a.attitude_rad));
+      const auto posture =
+          arm.reach(stances[i].footing.T_world_base.inverse() * p_world_bucket, tele_m,
+                    attitude_rad);
+      if (!posture || programme.margin(stances[i], *posture) < min_margin_m) continue;
+      if (round + 1 == kRounds && !judge(i, *posture)) continue;
+      samples[i].tele_m = tele_m;
+      samples[i].attitude_rad = attitude_rad;
+      changed = true;
+    }
+    if (!changed) return;
+  }
+}
+
+}  // namespace
+
+BucketPath::Sample BucketPath::at(double sigma_m) const {
+  const auto after = std::upper_bound(
+      samples.begin(), samples.end(), sigma_m,
+      [](double sigma, const Sample& sample) { return sigma < sample.sigma_m; });
+  if (after == samples.begin()) return samples.front();
+  if (after == samples.end()) return samples.back();
+  const Sample& a = *std::prev(after);
+  const double share = (sigma_m - a.sigma_m) / (after->sigma_m - a.sigma_m);
+  return {sigma_m, a.tele_m + share * (after->tele_m - a.tele_m),
+          a.attitude_rad + share * (after->attitude_rad - a.attitude_rad)};
+}
+
+Result<BucketPath, MotionFailure> bucket_path(
+    const ArmKinematics& arm, const StanceGround& ground, const BaseRun& run,
+    const std::vector<BucketStance>& stances, const Eigen::Vector3d& p_world_bucket,
+    const BucketPathSettings& settings, const PostureJudge& judge) {
+  const Programme programme(arm, ground, p_world_bucket, settings);
+  const std::size_t n = run.knots.size(), cells = programme.num_cells();
+  std::vector<Cell> table(n * cells);
+  for (std::size_t i = 0; i < n; ++i) programme.fill(stances[i], &table[i * cells]);
+
+  std::vector<std::size_t> way;
+  for (int round = 0; way.empty(); ++round) {
+    const std::size_t reached = programme.cheapest_way(table, n, way);
+    if (reached < n || round == kMaxRounds) {
+      return tl::unexpected<MotionFailure>(
+          {run.knots[std::min(reached, n - 1)].state,
+           reached == 0 ? "no arm posture reaches the bucket's point with enough stability"
+                        : "the arm cannot follow with the bucket standing and enough stability"});
+    }
+    bool passes = true;
+    for (std::size_t i = 0; i < n; ++i) {
+      Cell& cell = table[i * cells + way[i]];
+      if (!cell.judged) {
+        cell.judged = true;
+        if (!judge(i, cell.posture)) cell.node_cost = kInfinity;
+      }
+      passes &= cell.node_cost < kInfinity;
+    }
+    if (!passes) way.clear();
+  }
+
+  BucketPath path;
+  path.samples.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    path.samples[i] = {run.knots[i].sigma_m, programme.tele(way[i]), programme.attitude(way[i])};
+  }
+  smooth_samples(programme, arm, judge, stances, p_world_bucket, settings.min_margin_m,
+                 path.samples);
+  path.min_margin_m = kInfinity;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto posture = arm.reach(stances[i].footing.T_world_base.inverse() * p_world_bucket,
+                                   path.samples[i].tele_m, path.samples[i].attitude_rad);
+    path.min_margin_m = std::min(path.min_margin_m, programme.margin(stances[i], *posture));
+  }
+  return path;
+}
+
+}  // namespace wex

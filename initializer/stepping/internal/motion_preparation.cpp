@@ -1,0 +1,170 @@
+// What MotionBuilder decides before it makes nodes: base motion, how high wheels are lifted, how the
+// arm is held.
+#include <algorithm>
+#include <cmath>
+
+#include "initializer/stepping/internal/motion_builder.hpp"
+
+namespace wex {
+namespace {
+
+constexpr double kTableErrorM = 1e-4;    // added to demands: tables err by less
+constexpr double kBeamClearanceM = 0.05;
+constexpr double kLiftStepRad = 0.05;
+
+std::string name_of(int wheel) {
+  return wheel < 0 ? "the chassis"
+                   : "wheel " + std::string(kLimbNames[static_cast<std::size_t>(wheel)]);
+}
+
+}  // namespace
+
+Result<WheelPlacement, PlacementFailure> MotionBuilder::placed(const BaseRun::Point& point,
+                                                               std::uint8_t lifted,
+                                                               const Hips& lifted_hfe_rad) {
+  auto placement = parts_.placer.place(point.base, point.curvature_1_m, lifted, lifted_hfe_rad,
+                                       guess_rad_);
+  if (!placement) return placement;
+  for (std::size_t i = 0; i < kNumWheels; ++i) {
+    if ((lifted >> i & 1) == 0) guess_rad_[i] = placement->hfe_rad[i];
+  }
+  return placement;
+}
+
+std::optional<std::string> MotionBuilder::judge(const BaseRun& run, const BaseKnot& knot) {
+  Hips upper{};
+  for (int i = 0; i < kNumWheels; ++i) {
+    upper[static_cast<std::size_t>(i)] = parts_.placer.upper_rad(i);
+  }
+  const std::uint8_t lifted = run.support.lifted;
+  const auto placement = placed({knot.base, knot.curvature_1_m}, lifted, upper);
+  if (!placement) return name_of(placement.error().wheel) + " " + placement.error().why;
+  if (!parts_.placer.belly_clear(knot.base)) return "the chassis is too close to the ground";
+  for (int i = 0; i < kNumWheels; ++i) {
+    if ((lifted >> i & 1) == 0) continue;
+    if (!parts_.placer.lowest_clear_rad(knot.base, knot.curvature_1_m, i,
+                                        parts_.motion.swing_clearance_m)) {
+      return name_of(i) + " cannot be lifted clear of the ground";
+    }
+  }
+  if (lifted == 0) {
+    const Footing footing =
+        footing_on(knot.base, *placement, 0, nullptr, parts_.placer.mass_kg());
+    const double margin_m = footing.margin_m(parts_.arm.moment_base(parts_.arm.transport()));
+    if (margin_m < parts_.settings.min_stability_margin_m + kTableErrorM) {
+      return "only " + std::to_string(margin_m) + " m of stability on four wheels";
+    }
+  }
+  return std::nullopt;
+}
+
+std::vector<BucketStance> MotionBuilder::stances(const BaseRun& run) {
+  std::vector<BucketStance> stances(run.knots.size());
+  const Eigen::Vector3d* bucket =
+      run.support.bucket < 0
+          ? nullptr
+          : &sequence_.bucket_points[static_cast<std::size_t>(run.support.bucket)];
+  for (std::size_t i = 0; i < run.knots.size(); ++i) {
+    const BaseRun::Point point{run.knots[i].base, run.knots[i].curvature_1_m};
+    const auto placement = placed(point, run.support.lifted, run.lifted_hfe_rad);
+    WEX_EXPECTS(placement.has_value());  // smooth_base has judged it
+    stances[i].footing = footing_on(point.base, *placement, run.support.lifted, bucket,
+                                    parts_.placer.mass_kg());
+    if (i == 0 || i + 1 == run.knots.size()) stances[i].on_wheels = footing(run, i, 0);
+  }
+  return stances;
+}
+
+// The wheels' clearance decides how high legs are lifted; their beams may ask for more.
+MotionBuilder::Done MotionBuilder::raise_legs_clear(BaseRun& run) {
+  const StanceGround& ground = parts_.placer.ground();
+  const auto height_at = [&](const Eigen::Vector2d& p) { return ground.highest_m(p.x(), p.y()); };
+  const auto& capsules = parts_.collision.capsules();
+  for (std::size_t leg = 0; leg < kNumWheels; ++leg) {
+    if ((run.support.lifted >> leg & 1) == 0) continue;
+    const auto part = static_cast<CollisionModel::Part>(
+        static_cast<std::size_t>(CollisionModel::Part::kLF) + leg);
+    double& hfe = run.lifted_hfe_rad[leg];
+    for (const BaseKnot& knot : run.knots) {
+      const BaseRun::Point point{knot.base, knot.curvature_1_m};
+      while (true) {
+        const auto placement = placed(point, run.support.lifted, run.lifted_hfe_rad);
+        if (!placement) return tl::unexpected<MotionFailure>({knot.state, placement.error().why});
+        parts_.machine.tree.update(posture(point, *placement, parts_.arm.transport()), workspace_);
+        double clearance_m = 1e9;
+        for (std::size_t c = 0; c < capsules.size(); ++c) {
+          if (capsules[c].part != part || capsules[c].load_bearing) continue;
+          clearance_m = std::min(clearance_m, parts_.collision.ground_clearance_m(
+                                                  workspace_, static_cast<int>(c), 0.3, height_at));
+        }
+        if (clearance_m >= kBeamClearanceM) break;
+        const double upper = parts_.placer.upper_rad(static_cast<int>(leg));
+        if (hfe >= upper) {
+          return tl::unexpected<MotionFailure>(
+              {knot.state, "leg " + std::string(kLimbNames[leg]) +
+                               " cannot be lifted clear of the ground"});
+        }
+        hfe = std::min(hfe + kLiftStepRad, upper);
+      }
+    }
+  }
+  return {};
+}
+
+MotionBuilder::Done MotionBuilder::prepare_support(PreparedRun& run) {
+  if (run.base.support.lifted == 0 && run.base.support.bucket < 0) {
+    run.held = {{0, parts_.arm.transport()}};
+    return {};
+  }
+  if (auto lifts = lift_wheels(run.base, parts_.placer, parts_.motion.swing_clearance_m); !lifts) {
+    return lifts;
+  }
+  if (auto raised = raise_legs_clear(run.base); !raised) return raised;
+
+  const std::vector<BucketStance> stance = stances(run.base);
+  std::vector<Eigen::VectorXd> q(stance.size());
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const BaseRun::Point point{run.base.knots[i].base, run.base.knots[i].curvature_1_m};
+    q[i] = posture(point, *placed(point, run.base.support.lifted, run.base.lifted_hfe_rad),
+                   parts_.arm.transport());
+  }
+  const bool bucket = run.base.support.bucket >= 0;
+  const PostureJudge clear = [&](std::size_t knot, const ArmPosture& posture) {
+    return mover_.fault(stance[knot].footing, q[knot], posture, bucket) == nullptr;
+  };
+  const double margin_m = parts_.settings.min_stability_margin_m + kTableErrorM;
+  if (bucket) {
+    BucketPathSettings settings;
+    settings.min_margin_m = margin_m;
+    auto path = bucket_path(
+        parts_.arm, parts_.placer.ground(), run.base, stance,
+        sequence_.bucket_points[static_cast<std::size_t>(run.base.support.bucket)], settings, clear);
+    if (!path) return tl::unexpected<MotionFailure>(path.error());
+    run.bucket = *std::move(path);
+    return {};
+  }
+  std::vector<ArmPosture> candidates;
+  for (const BaseKnot& knot : run.base.knots) {
+    candidates.push_back(sequence_.states[knot.state].arm);
+  }
+  auto held =
+      counterweights(parts_.arm, run.base, stance, candidates, margin_m, clear);
+  if (!held) return tl::unexpected<MotionFailure>(held.error());
+  run.held = *std::move(held);
+  return {};
+}
+
+// Smoothed where that works; as decided where the arm or the lifted wheels cannot follow it.
+MotionBuilder::Done MotionBuilder::prepare(PreparedRun& run) {
+  const std::vector<BaseKnot> decided = run.base.knots;
+  const auto judged = [&](const BaseKnot& knot) { return judge(run.base, knot); };
+  guess_rad_ = parts_.placer.default_hfe_rad();
+  if (auto smooth = smooth_base(run.base, parts_.motion.base_window_m, judged); !smooth) {
+    return smooth;
+  }
+  if (prepare_support(run)) return {};
+  run.base.knots = decided;
+  return prepare_support(run);
+}
+
+}  // namespace wex

@@ -1,0 +1,95 @@
+#include "initializer/stepping/motion_nodes.hpp"
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "initializer/stepping/support_polygon.hpp"
+
+namespace wex {
+namespace {
+
+constexpr double kRounding = 1e-6;
+constexpr double kStandstillM = 1e-9;
+
+double travel_m(const Eigen::Vector3d& moved, const Eigen::Vector3d& axle_world, bool grounded) {
+  const Eigen::Vector3d forward = axle_world.cross(Eigen::Vector3d::UnitZ()).normalized();
+  if (!grounded) return moved.dot(forward);
+  const Eigen::Vector3d rolled = moved - moved.dot(axle_world) * axle_world;
+  return std::copysign(rolled.norm(), rolled.dot(forward));
+}
+
+}  // namespace
+
+void turn_wheels(const MachineModel& machine, std::vector<MotionNode>& nodes) {
+  KinematicTree::Workspace before = machine.tree.make_workspace();
+  KinematicTree::Workspace after = machine.tree.make_workspace();
+  machine.tree.update(nodes.front().q, before);
+  for (std::size_t i = 1; i < nodes.size(); ++i) {
+    machine.tree.update(nodes[i].q, after);
+    const Eigen::Vector3d base_moved = (nodes[i].q - nodes[i - 1].q).head<3>();
+    const bool driving = base_moved.head<2>().norm() > kStandstillM;
+    for (std::size_t k = 0; k < kNumWheels; ++k) {
+      const WheeledLeg& leg = machine.legs[k];
+      if (leg.wheel < 0) continue;
+      const bool grounded = nodes[i - 1].contacts[k];
+      nodes[i].q[leg.wheel] = nodes[i - 1].q[leg.wheel];
+      if (!grounded && !driving) continue;
+      const auto axle = [&](const KinematicTree::Workspace& w) {
+        return machine.tree.direction(w, leg.carrier_body, leg.axle_carrier);
+      };
+      const Eigen::Vector3d axle_world = (axle(before) + axle(after)).normalized();
+      const Eigen::Vector3d moved =
+          machine.tree.position(after, leg.carrier_body, leg.p_carrier_wheel) -
+          machine.tree.position(before, leg.carrier_body, leg.p_carrier_wheel);
+      double turn_rad = travel_m(moved, axle_world, grounded) / leg.radius_m;
+      if (grounded) {
+        const auto carrier = static_cast<std::size_t>(leg.carrier_body);
+        const Eigen::AngleAxisd carried(before.T_world_body[carrier].linear().transpose() *
+                                        after.T_world_body[carrier].linear());
+        turn_rad -= carried.angle() * carried.axis().dot(leg.axle_carrier);
+      }
+      nodes[i].q[leg.wheel] += leg.wheel_sign * turn_rad;
+    }
+    std::swap(before, after);
+  }
+}
+
+std::optional<NodeFault> find_fault(const MachineModel& machine,
+                                    const std::vector<MotionNode>& nodes, double min_margin_m) {
+  KinematicTree::Workspace w = machine.tree.make_workspace();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const MotionNode& node = nodes[i];
+    for (int j = 0; j < machine.num_joints(); ++j) {
+      const Joint& joint = machine.joints[static_cast<std::size_t>(j)];
+      const double value = node.q[kNumBaseCoordinates + j];
+      if (joint.continuous) continue;
+      if (!(value >= joint.lower - kRounding && value <= joint.upper + kRounding)) {
+        return NodeFault{i, joint.name + " is beyond its limits"};
+      }
+    }
+    machine.tree.update(node.q, w);
+    std::array<Eigen::Vector2d, kNumLimbs> contacts;
+    std::size_t num_contacts = 0;
+    for (std::size_t k = 0; k < kNumWheels; ++k) {
+      if (!node.contacts[k]) continue;
+      const WheeledLeg& leg = machine.legs[k];
+      contacts[num_contacts++] =
+          machine.tree.position(w, leg.carrier_body, leg.p_carrier_wheel).head<2>();
+    }
+    if (node.contacts[static_cast<std::size_t>(Limb::kArm)]) {
+      contacts[num_contacts++] =
+          machine.tree.position(w, machine.arm->contact_body, machine.arm->p_body_contact)
+              .head<2>();
+    }
+    const double margin_m = hull_margin_m(machine.tree.com(w).head<2>(),
+                                          std::span(contacts.data(), num_contacts));
+    if (!(margin_m >= min_margin_m)) {
+      return NodeFault{i, "only " + std::to_string(margin_m) + " m of stability"};
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace wex

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "initializer/stepping/stepping_timing.hpp"
+#include "models/excavator/machine_model.hpp"
+
+namespace wex {
+
+/// Fills in wheel angles: wheels on the ground roll the way their centres go, less the turn of what
+/// carries the axle; lifted ones turn with ground speed while the base drives.
+void turn_wheels(const MachineModel& machine, std::vector<MotionNode>& nodes);
+
+/// The first node that breaks a limit of a joint or of stability on its scheduled contacts.
+struct NodeFault {
+  std::size_t node = 0;
+  std::string why;
+};
+[[nodiscard]] std::optional<NodeFault> find_fault(const MachineModel& machine,
+                                                  const std::vector<MotionNode>& nodes,
+                                                  double min_margin_m);
+
+}  // namespace wex

@@ -1,0 +1,65 @@
+#include "initializer/stepping/stepping_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "initializer/stepping/internal/motion_builder.hpp"
+
+namespace wex {
+
+struct SteppingMotion::Impl {
+  MotionParts parts;
+};
+
+SteppingMotion::SteppingMotion(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SteppingMotion::~SteppingMotion() = default;
+SteppingMotion::SteppingMotion(SteppingMotion&&) noexcept = default;
+
+Result<SteppingMotion> SteppingMotion::build(const TerrainMap& terrain, const MachineModel& machine,
+                                             const PlanSettings& settings,
+                                             const SteppingMotionSettings& motion) {
+  auto placer = WheelPlacer::build(terrain, machine, settings);
+  if (!placer) return tl::unexpected<Error>(placer.error());
+  auto arm = ArmKinematics::build(machine);
+  if (!arm) return tl::unexpected<Error>(arm.error());
+  return SteppingMotion(std::make_unique<Impl>(
+      Impl{{machine, settings, motion, *std::move(placer), *std::move(arm),
+            CollisionModel::build(machine)}}));
+}
+
+Result<std::vector<WholeBodyNode>, MotionFailure> SteppingMotion::nodes(
+    const CertifiedSequence& sequence) const {
+  WEX_EXPECTS(!sequence.states.empty() && sequence.states.front().support == Support{} &&
+              sequence.states.back().support == Support{});
+  MotionBuilder builder(impl_->parts, sequence);
+  auto built = builder.build();
+  if (!built) return tl::unexpected<MotionFailure>(built.error());
+  std::vector<MotionNode>& nodes = *built;
+  const MachineModel& machine = impl_->parts.machine;
+  turn_wheels(machine, nodes);
+  constexpr double kRoundingM = 2e-3;  // margins were judged before nodes were put between knots
+  if (const auto fault = find_fault(
+          machine, nodes, impl_->parts.settings.min_stability_margin_m - kRoundingM)) {
+    return tl::unexpected<MotionFailure>({nodes[fault->node].state, fault->why});
+  }
+  const std::vector<double> t_s =
+      node_times_s(machine, nodes,
+                   {impl_->parts.motion.rate_fraction, impl_->parts.motion.max_base_acceleration_m_s2});
+  std::vector<WholeBodyNode> result(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    result[i] = {t_s[i], std::move(nodes[i].q), nodes[i].contacts};
+  }
+  return result;
+}
+
+Result<std::vector<WholeBodyNode>, MotionFailure> stepping_motion(
+    const TerrainMap& terrain, const MachineModel& machine, const PlanSettings& settings,
+    const CertifiedSequence& sequence, const SteppingMotionSettings& motion) {
+  const auto steps = SteppingMotion::build(terrain, machine, settings, motion);
+  if (!steps) return tl::unexpected<MotionFailure>({0, steps.error().message});
+  return steps->nodes(sequence);
+}
+
+}  // namespace wex
