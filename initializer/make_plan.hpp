@@ -49,6 +49,7 @@ struct PlanSettings {
 struct PlanProgress {
   double elapsed_s = 0.0;
   std::optional<double> best_cost;
+  const Plan* better = nullptr;  ///< a plan just found, the best so far; valid during the call
 };
 
 /// A plan from task.start to task.goal (local world frame): driving where it can, stepping where it

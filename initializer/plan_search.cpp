@@ -83,7 +83,7 @@ bool PlanSearch::out_of_budget() {
 
 void PlanSearch::report() {
   reported_s_ = elapsed_s();
-  observer_({reported_s_, best_ ? std::optional<double>(best_->cost) : std::nullopt});
+  observer_({reported_s_, best_ ? std::optional<double>(best_->cost) : std::nullopt, nullptr});
 }
 
 bool PlanSearch::blocked(Kind kind, const Pose2& pose) {
@@ -306,7 +306,7 @@ bool PlanSearch::keep(Plan plan, std::optional<CertifiedSequence> sequence) {
   best_ = std::move(plan);
   best_sequence_ = std::move(sequence);
   improved_s_ = elapsed_s();
-  if (observer_) report();
+  if (observer_) observer_({elapsed_s(), best_->cost, &*best_});
   return true;
 }
 

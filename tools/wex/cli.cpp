@@ -7,11 +7,13 @@
 #include "models/terrain/synthetic.hpp"
 #include "tools/bench/can_bench.hpp"
 #include "tools/bench/drive_bench.hpp"
+#include "tools/bench/initializer_bench.hpp"
 #include "tools/bench/kinematics_bench.hpp"
 #include "tools/bench/mpc_bench.hpp"
 #include "tools/bench/terrain_bench.hpp"
 #include "tools/check/check_command.hpp"
 #include "tools/wex/can_command.hpp"
+#include "tools/wex/initializer_bench_picture.hpp"
 #include "tools/wex/machine_command.hpp"
 #include "tools/wex/output_folder.hpp"
 #include "tools/wex/pipeline.hpp"
@@ -40,6 +42,7 @@ struct Options {
   ModelOptions model;
   DriveBenchOptions drive_bench;
   CanBenchOptions can_bench;
+  InitializerBenchOptions initializer_bench;
   MachineOptions can_machine;
   CanOptions can;
   ReplayOptions replay;
@@ -141,10 +144,39 @@ void add_run(CLI::App& app, Options& options) {
       ->excludes(lock_step);
 }
 
+/// How plans are made, and what of it is switched off for a comparison.
+void add_plan_settings(CLI::App& command, PlanSettings& plan) {
+  static const std::map<std::string, PlanMode> kModes{{"certified", PlanMode::kCertified},
+                                                      {"drive", PlanMode::kDriveOnly}};
+  command
+      .add_option("--mode", plan.mode,
+                  "certified: drive where it can, step where it must; drive: on four wheels only")
+      ->transform(CLI::CheckedTransformer(kModes))
+      ->type_name("MODE")
+      ->default_str("certified");
+  command
+      .add_option("--stepping-penalty", plan.stepping_penalty,
+                  "Factor on the cost of lifting wheels: large to drive round, 0 to step freely")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->type_name("F")
+      ->capture_default_str();
+  const auto add_ablation = [&](const char* name, bool& mechanism, const char* help) {
+    command.add_flag_callback(name, [&mechanism] { mechanism = false; }, help);
+  };
+  PlanAblation& ablation = plan.ablation;
+  add_ablation("--no-certificate-first", ablation.certificate_first,
+               "Ablation: search at once, without a certificate of the direct path");
+  add_ablation("--no-alignment", ablation.alignment, "Ablation: obstacles may be met at any angle");
+  add_ablation("--no-blocking", ablation.blocking, "Ablation: places where paths failed stay open");
+  add_ablation("--no-certified-tree", ablation.certified_tree,
+               "Ablation: no tree of certified states as fallback");
+}
+
 void add_plan(CLI::App& app, Options& options) {
   CLI::App& command = *app.add_subcommand("plan", "Plan only: plan.csv, overview.png, result.json");
   command.footer("Exit codes: 0 plan made, 1 internal error, 2 bad input, 3 no plan.");
   add_planning(command, options);
+  add_plan_settings(command, options.run.planning);
 }
 
 void add_terrain(CLI::App& app, TerrainOptions& terrain) {
@@ -277,7 +309,45 @@ void add_check(CLI::App& app, check::CheckOptions& check) {
   command.add_flag("--all", check.all, "List also rules that nothing was subject to");
 }
 
-void add_bench(CLI::App& app, DriveBenchOptions& drive, CanBenchOptions& can) {
+void add_initializer_bench(CLI::App& bench, InitializerBenchOptions& options) {
+  CLI::App& command = *bench.add_subcommand(
+      "initializer",
+      "Plans over the twenty cells of terrain and difficulty, checked by others' eyes");
+  static const std::map<std::string, InitializerBenchSet> kSets{
+      {"cells", InitializerBenchSet::kCells},
+      {"hard", InitializerBenchSet::kHard},
+      {"beyond", InitializerBenchSet::kBeyond}};
+  command
+      .add_option("--set", options.set,
+                  "cells: the twenty and the side slope; hard: start and goal within 3 m and 90 "
+                  "degrees; beyond: larger obstacles than the paper's")
+      ->transform(CLI::CheckedTransformer(kSets))
+      ->type_name("SET")
+      ->default_str("cells");
+  command.add_option("--seeds", options.seeds, "Seeds per cell")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  command.add_flag("--quick", options.quick, "Two seeds, one second each");
+  command.add_option("--jobs", options.jobs, "Processes")
+      ->check(CLI::Range(1, 64))
+      ->type_name("N")
+      ->capture_default_str();
+  command.add_option("--cell", options.cells, "Only cells whose names begin so (repeatable) [all]")
+      ->type_name("NAME");
+  command.add_option("--out", options.out, "Folder for initializer_bench.csv and pictures")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command.add_option("--time-budget", options.plan.time_budget_s, "CPU seconds per plan")
+      ->check(CLI::Range(0.01, 3600.0))
+      ->type_name("S")
+      ->capture_default_str();
+  add_plan_settings(command, options.plan);
+}
+
+void add_bench(CLI::App& app, Options& options) {
+  DriveBenchOptions& drive = options.drive_bench;
+  CanBenchOptions& can = options.can_bench;
   CLI::App& command = *app.add_subcommand("bench", "Measure: medians and percentiles on stdout");
   command.require_subcommand(1);
   command.add_subcommand("terrain", "Terrain layers and queries");
@@ -290,6 +360,7 @@ void add_bench(CLI::App& app, DriveBenchOptions& drive, CanBenchOptions& can) {
   bus.add_option("--out", can.out, "Folder for can_bench.csv and the log")
       ->type_name("DIR")
       ->capture_default_str();
+  add_initializer_bench(command, options.initializer_bench);
   CLI::App& drives = *command.add_subcommand(
       "drive", "Whole runs over several terrains and seeds: success counts and worst figures");
   drives.add_option("--seeds", drive.seeds, "Seeds per terrain")
@@ -358,12 +429,23 @@ int model_command(const ModelOptions& options, std::ostream& out, std::ostream& 
   return 0;
 }
 
+int initializer_bench_command(const InitializerBenchOptions& options, std::ostream& out,
+                              std::ostream& err) {
+  const Result<InitializerBenchOutcome> outcome = bench_initializer(options, out, err);
+  if (!outcome) return refuse(err, outcome.error());
+  if (const auto drawn = draw_initializer_bench(*outcome, options.out); !drawn) {
+    return refuse(err, drawn.error());
+  }
+  return outcome->rates_hold ? 0 : 5;
+}
+
 int bench_command(const CLI::App& command, const Options& options, std::ostream& out,
                   std::ostream& err) {
   const std::string name = command.get_subcommands().front()->get_name();
   if (name == "terrain") return bench_terrain();
   if (name == "kinematics") return bench_kinematics();
   if (name == "mpc") return bench_mpc();
+  if (name == "initializer") return initializer_bench_command(options.initializer_bench, out, err);
   const Result<int> code = name == "can" ? bench_can(options.can_bench, out, err)
                                          : bench_drive(options.drive_bench, out, err);
   return code ? *code : refuse(err, code.error());
@@ -424,7 +506,7 @@ int run_cli(int argc, const char* const* argv, std::ostream& out, std::ostream& 
   add_plan(app, options);
   add_terrain(app, options.terrain);
   add_model(app, options.model);
-  add_bench(app, options.drive_bench, options.can_bench);
+  add_bench(app, options);
   add_can_machine(app, options.can_machine);
   add_can(app, options.can);
   add_replay(app, options.replay);

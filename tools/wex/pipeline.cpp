@@ -120,7 +120,9 @@ class Pipeline {
 
   Result<void> plan() {
     progress_.begin("plan");
-    PlanSettings settings;
+    PlanSettings settings = report_.options.planning;
+    // Refinement and tracking hold four wheels on the ground.
+    if (report_.options.depth == Depth::kDrive) settings.mode = PlanMode::kDriveOnly;
     settings.seed = report_.options.seed;
     settings.iterations = report_.options.iterations;
     settings.time_budget_s = report_.options.time_budget_s;
