@@ -10,7 +10,6 @@ constexpr double kStraightElbowM = 0.02;  // kept from it: joints would race
 
 }  // namespace
 
-
 Result<ArmKinematics> ArmKinematics::build(const MachineModel& machine) {
   auto plane = ArmPlane::of(machine);
   if (!plane) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace wex {
 namespace {
@@ -10,11 +11,17 @@ namespace {
 enum { kTurn, kBoom, kDipper, kTele, kPitch };
 
 constexpr double kNodeStep = 0.1, kCheckStep = 0.05;  // rad or m
-constexpr double kDirectTurnRad = 0.5;   // slews up to this may happen along with everything else
+constexpr double kDirectTurnRad = 0.5;  // slews up to this may happen along with everything else
 constexpr double kCapsuleSpacingM = 0.3;
-constexpr double kRaiseRad = 0.5;        // of the boom, to get out of what is around the bucket
+constexpr double kRaiseRad = 0.5;  // of the boom, to get out of what is around the bucket
+constexpr std::array<std::pair<double, double>, 4> kDetoursM{
+    // of the bucket: up, outwards
+    {{0.6, 0.0}, {0.6, 0.5}, {1.2, 0.0}, {1.2, 0.5}}};
 constexpr double kEndStop = 0.02;
+constexpr double kRiseStepM = 0.05;
+constexpr double kStraightRiseM = 0.1;       // nothing but straight up so far
 constexpr double kShortestApproachM = 0.15;  // where the whole one does not fit
+constexpr double kHighestApproachM = 0.8;
 
 double largest_step(const ArmKinematics::Joints& a, const ArmKinematics::Joints& b) {
   double step = 0.0;
@@ -32,8 +39,8 @@ ArmKinematics::Joints between(const ArmKinematics::Joints& a, const ArmKinematic
 }  // namespace
 
 ArmMover::ArmMover(const MachineModel& machine, const ArmKinematics& arm,
-                   const CollisionModel& collision, const StanceGround& ground,
-                   double min_margin_m, const SteppingMotionSettings& motion)
+                   const CollisionModel& collision, const StanceGround& ground, double min_margin_m,
+                   const SteppingMotionSettings& motion)
     : machine_(machine),
       arm_(arm),
       collision_(collision),
@@ -50,6 +57,13 @@ ArmMover::ArmMover(const MachineModel& machine, const ArmKinematics& arm,
 
 const char* ArmMover::fault(const Footing& footing, Eigen::VectorXd& q, const ArmPosture& posture,
                             bool bucket_on_ground) {
+  const char* found = find_fault(footing, q, posture, bucket_on_ground);
+  if (found != nullptr) last_fault_ = found;
+  return found;
+}
+
+const char* ArmMover::find_fault(const Footing& footing, Eigen::VectorXd& q,
+                                 const ArmPosture& posture, bool bucket_on_ground) {
   if (!arm_.within_limits(posture)) return "an arm joint is beyond its limits";
   if (!(footing.margin_m(arm_.moment_base(posture)) >= min_margin_m_)) {
     return "the arm takes too much stability";
@@ -58,12 +72,16 @@ const char* ArmMover::fault(const Footing& footing, Eigen::VectorXd& q, const Ar
   machine_.tree.update(q, workspace_);
   const auto height_at = [&](const Eigen::Vector2d& p) { return ground_.height_m(p.x(), p.y()); };
   for (const int capsule : arm_capsules_) {
-    const bool may_touch =
-        bucket_on_ground && collision_.capsules()[static_cast<std::size_t>(capsule)].load_bearing;
-    if (may_touch) continue;
+    const CollisionModel::Capsule& shape = collision_.capsules()[static_cast<std::size_t>(capsule)];
+    const bool bucket = shape.body == machine_.arm->contact_body;
+    if (bucket && bucket_on_ground) continue;
+    // The bucket's hull is a box that dips below its edge when it leans: only what carries load is
+    // kept away by the whole clearance.
+    const bool hull = bucket && !shape.load_bearing;
+    const double demand_m = bucket_on_ground || hull ? 0.0 : motion_.swing_clearance_m;
     const double clearance_m =
         collision_.ground_clearance_m(workspace_, capsule, kCapsuleSpacingM, height_at);
-    if (clearance_m < (bucket_on_ground ? 0.0 : motion_.swing_clearance_m)) {
+    if (clearance_m < demand_m) {
       return "the arm is too close to the ground";
     }
   }
@@ -77,14 +95,14 @@ const char* ArmMover::fault(const Footing& footing, Eigen::VectorXd& q, const Ar
 bool ArmMover::append_clear_line(const Footing& footing, const Joints& to,
                                  std::vector<Joints>& path) {
   const Joints from = path.back();
-  const int nodes = std::max(1, static_cast<int>(std::ceil(largest_step(from, to) / kNodeStep - 1e-9)));
+  const int nodes =
+      std::max(1, static_cast<int>(std::ceil(largest_step(from, to) / kNodeStep - 1e-9)));
   const int checks = 2 * nodes;
   static_assert(kNodeStep == 2.0 * kCheckStep);
   const std::size_t kept = path.size();
   for (int i = 1; i <= checks; ++i) {
     const Joints joints = between(from, to, static_cast<double>(i) / checks);
-    if (const char* why = fault(footing, q_, ArmKinematics::posture_of(joints), false)) {
-      last_fault_ = why;
+    if (fault(footing, q_, ArmKinematics::posture_of(joints), false) != nullptr) {
       path.resize(kept);
       return false;
     }
@@ -93,24 +111,27 @@ bool ArmMover::append_clear_line(const Footing& footing, const Joints& to,
   return true;
 }
 
-// Between a folded posture and another at the same turn: in one go, or by way of a raised boom at
-// the unfolded end, or with the telescope retracted there as well.
-bool ArmMover::append_change(const Footing& footing, const Joints& to, bool unfolding,
-                             std::vector<Joints>& path) {
+// From anywhere to a folded posture at the same turn: in one go, or by way of somewhere higher and
+// farther out, or with the boom raised and the telescope retracted first.
+bool ArmMover::append_fold(const Footing& footing, const Joints& fold, std::vector<Joints>& path) {
   const std::size_t kept = path.size();
   const Joints from = path.back();
-  Joints raised = unfolding ? to : from;
+  if (largest_step(from, fold) == 0.0) return true;
+  const ArmPosture posture = ArmKinematics::posture_of(from);
+  std::vector<std::vector<Joints>> ways{{}};
+  for (const auto& [up_m, out_m] : kDetoursM) {
+    if (const auto higher = shifted(footing, posture, up_m, out_m, 0.0, 0.0)) {
+      ways.push_back({ArmKinematics::joints_of(*higher)});
+    }
+  }
+  Joints raised = from;
   raised[kBoom] = std::min(arm_.upper()[kBoom] - kEndStop, raised[kBoom] + kRaiseRad);
   Joints retracted = raised;
   retracted[kTele] = std::min(raised[kTele], arm_.transport().tele_m);
-  Joints folded_boom_up = unfolding ? from : to;
-  folded_boom_up[kBoom] = arm_.upper()[kBoom] - kEndStop;
-  const std::vector<std::vector<Joints>> ways{
-      {}, {raised}, {raised, retracted}, {raised, folded_boom_up},
-      {raised, retracted, folded_boom_up}};
-  for (std::vector<Joints> way : ways) {
-    if (unfolding) std::reverse(way.begin(), way.end());
-    way.push_back(to);
+  ways.push_back({raised});
+  ways.push_back({raised, retracted});
+  for (std::vector<Joints>& way : ways) {
+    way.push_back(fold);
     bool clear = true;
     for (const Joints& joints : way) clear = clear && append_clear_line(footing, joints, path);
     if (clear) return true;
@@ -121,8 +142,7 @@ bool ArmMover::append_change(const Footing& footing, const Joints& to, bool unfo
 
 bool ArmMover::append_slew(const Footing& footing, double turn_rad, std::vector<Joints>& path) {
   Joints to = path.back();
-  const double other_way_rad =
-      turn_rad + (turn_rad > to[kTurn] ? -2.0 : 2.0) * std::numbers::pi;
+  const double other_way_rad = turn_rad + (turn_rad > to[kTurn] ? -2.0 : 2.0) * std::numbers::pi;
   to[kTurn] = turn_rad;
   if (append_clear_line(footing, to, path)) return true;
   to[kTurn] = other_way_rad;
@@ -141,77 +161,89 @@ Result<std::vector<ArmPosture>, std::string> ArmMover::path(const Footing& footi
   if (std::abs(end[kTurn]) > std::numbers::pi + kDirectTurnRad) {
     end[kTurn] -= std::copysign(2.0 * std::numbers::pi, end[kTurn]);
   }
-  const auto postures = [&](const std::vector<Joints>& path) {
-    std::vector<ArmPosture> result;
-    for (const Joints& joints : path) result.push_back(ArmKinematics::posture_of(joints));
-    return result;
-  };
   std::vector<Joints> path{begin};
-  if (std::abs(end[kTurn] - begin[kTurn]) <= kDirectTurnRad &&
-      append_clear_line(footing, end, path)) {
-    return postures(path);
-  }
+  bool found = fault(footing, q_, to, false) == nullptr &&
+               std::abs(end[kTurn] - begin[kTurn]) <= kDirectTurnRad &&
+               append_clear_line(footing, end, path);
   const Joints transport = ArmKinematics::joints_of(arm_.transport());
   Joints higher = transport;
   higher[kBoom] = arm_.upper()[kBoom] - kEndStop;
-  for (Joints fold : {transport, higher}) {
+  for (const Joints& fold : {transport, higher}) {
+    if (found) break;
+    // Unfolding is folding backwards: what is in the way is near the unfolded end.
+    std::vector<Joints> unfolding{end};
     path.resize(1);
-    fold[kTurn] = begin[kTurn];
-    Joints unfolded = end;
-    if (largest_step(fold, begin) > 0.0 && !append_change(footing, fold, false, path)) continue;
-    if (!append_slew(footing, end[kTurn], path)) continue;
-    unfolded[kTurn] = path.back()[kTurn];
-    if (largest_step(unfolded, path.back()) > 0.0 && !append_change(footing, unfolded, true, path)) {
-      continue;
+    Joints folded = fold;
+    folded[kTurn] = end[kTurn];
+    found = append_fold(footing, folded, unfolding);
+    folded[kTurn] = begin[kTurn];
+    found = found && append_fold(footing, folded, path) && append_slew(footing, end[kTurn], path);
+    if (!found) continue;
+    const double turns_rad = path.back()[kTurn] - end[kTurn];
+    for (auto joints = unfolding.rbegin() + 1; joints != unfolding.rend(); ++joints) {
+      (*joints)[kTurn] += turns_rad;
+      path.push_back(*joints);
     }
-    return postures(path);
   }
-  return tl::unexpected<std::string>(std::string("the arm finds no way: ") + last_fault_);
+  if (!found) return tl::unexpected<std::string>("the arm finds no way: " + why());
+  std::vector<ArmPosture> postures;
+  for (const Joints& joints : path) postures.push_back(ArmKinematics::posture_of(joints));
+  return postures;
+}
+
+std::optional<ArmPosture> ArmMover::shifted(const Footing& footing, const ArmPosture& posture,
+                                            double up_m, double out_m, double tele_step_m,
+                                            double attitude_step_rad) const {
+  const Eigen::Vector3d p_base = arm_.shape(posture).p_base_contact;
+  const Eigen::Vector3d out =
+      (footing.T_world_base.linear() * p_base).cwiseProduct(Eigen::Vector3d(1.0, 1.0, 0.0));
+  const Eigen::Vector3d shift_world = out_m * out.normalized() + up_m * Eigen::Vector3d::UnitZ();
+  auto there = arm_.reach(p_base + footing.T_world_base.linear().transpose() * shift_world,
+                          posture.tele_m + tele_step_m,
+                          arm_.attitude_rad(posture) + attitude_step_rad, kEndStop);
+  if (there) {
+    there->turn_rad = posture.turn_rad + wrap_angle(there->turn_rad - posture.turn_rad);
+  }
+  return there;
 }
 
 Result<std::vector<ArmPosture>, std::string> ArmMover::lowering(const Footing& footing,
                                                                 const Eigen::VectorXd& q,
                                                                 const ArmPosture& standing) {
-  constexpr double kStepM = 0.05;
   q_ = q;
-  const Eigen::Vector3d p_world = footing.T_world_base * arm_.shape(standing).p_base_contact;
-  const Eigen::Isometry3d T_base_world = footing.T_world_base.inverse();
-  double tele_m = standing.tele_m, attitude_rad = arm_.attitude_rad(standing);
   std::vector<ArmPosture> upwards{standing};
-  if (const char* why = fault(footing, q_, standing, true)) {
-    return tl::unexpected<std::string>(std::string("the bucket cannot stand: ") + why);
+  if (fault(footing, q_, standing, true) != nullptr) {
+    return tl::unexpected<std::string>("the bucket cannot stand: " + why());
   }
-  const int steps = static_cast<int>(std::ceil(motion_.bucket_approach_m / kStepM - 1e-9));
-  for (int i = 1; i <= steps; ++i) {
-    const Eigen::Vector3d p_base =
-        T_base_world * (p_world + Eigen::Vector3d(0.0, 0.0, motion_.bucket_approach_m * i / steps));
-    // The null space gives way only where an end stop or the ground asks for it.
-    const char* why = "the arm is at an end stop";
-    bool found = false;
-    for (const double tele_step : {0.0, -0.05, 0.05}) {
-      for (const double attitude_step : {0.0, -0.05, 0.05}) {
-        auto posture = arm_.reach(p_base, tele_m + tele_step, attitude_rad + attitude_step, kEndStop);
-        if (!posture) continue;
-        posture->turn_rad =
-            standing.turn_rad + wrap_angle(posture->turn_rad - standing.turn_rad);
-        if (const char* fault_here = fault(footing, q_, *posture, true)) {
-          why = fault_here;
-          continue;
+  // Straight up; the null space, and then the line itself, give way only where they must.
+  const auto step_up = [&](double height_m) {
+    for (const double out_m : {0.0, 0.5 * kRiseStepM, kRiseStepM}) {
+      if (out_m > 0.0 && height_m < kStraightRiseM) break;
+      for (const double tele_step_m : {0.0, -0.05, 0.05}) {
+        for (const double attitude_step_rad : {0.0, -0.05, 0.05}) {
+          const auto posture =
+              shifted(footing, upwards.back(), kRiseStepM, out_m, tele_step_m, attitude_step_rad);
+          if (!posture || fault(footing, q_, *posture, true) != nullptr) continue;
+          upwards.push_back(*posture);
+          return true;
         }
-        tele_m += tele_step;
-        attitude_rad += attitude_step;
-        upwards.push_back(*posture);
-        found = true;
-        break;
       }
-      if (found) break;
     }
-    if (found) continue;
-    if ((i - 1) * motion_.bucket_approach_m / steps >= kShortestApproachM) break;
-    return tl::unexpected<std::string>(std::string("the bucket cannot come down: ") + why);
+    return false;
+  };
+  double height_m = 0.0;
+  while (height_m < motion_.bucket_approach_m - 1e-9 ||
+         fault(footing, q_, upwards.back(), false) != nullptr) {
+    if (height_m > kHighestApproachM || !step_up(height_m)) break;
+    height_m += kRiseStepM;
+  }
+  if (height_m < kShortestApproachM) {
+    return tl::unexpected<std::string>("the bucket cannot come down: " + why());
   }
   std::reverse(upwards.begin(), upwards.end());
   return upwards;
 }
+
+std::string ArmMover::why() const { return last_fault_; }
 
 }  // namespace wex

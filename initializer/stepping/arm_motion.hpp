@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,15 +35,23 @@ class ArmMover {
 
   /// Postures from straight above a contact down to the one that stands on it.
   ///   errors  the bucket cannot come down there, and why
-  [[nodiscard]] Result<std::vector<ArmPosture>, std::string> lowering(
-      const Footing& footing, const Eigen::VectorXd& q, const ArmPosture& standing);
+  [[nodiscard]] Result<std::vector<ArmPosture>, std::string> lowering(const Footing& footing,
+                                                                      const Eigen::VectorXd& q,
+                                                                      const ArmPosture& standing);
 
  private:
   using Joints = ArmKinematics::Joints;
+  const char* find_fault(const Footing& footing, Eigen::VectorXd& q, const ArmPosture& posture,
+                         bool bucket_on_ground);
   bool append_clear_line(const Footing& footing, const Joints& to, std::vector<Joints>& path);
-  bool append_change(const Footing& footing, const Joints& to, bool unfolding,
-                     std::vector<Joints>& path);
+  bool append_fold(const Footing& footing, const Joints& fold, std::vector<Joints>& path);
   bool append_slew(const Footing& footing, double turn_rad, std::vector<Joints>& path);
+
+  /// The posture with the bucket moved in the world, and another choice of the null space.
+  [[nodiscard]] std::optional<ArmPosture> shifted(const Footing& footing, const ArmPosture& posture,
+                                                  double up_m, double out_m, double tele_step_m,
+                                                  double attitude_step_rad) const;
+  [[nodiscard]] std::string why() const;
 
   const MachineModel& machine_;
   const ArmKinematics& arm_;

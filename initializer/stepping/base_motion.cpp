@@ -112,9 +112,9 @@ Result<void, MotionFailure> lift_wheels(BaseRun& run, const WheelPlacer& placer,
             placer.lowest_clear_rad(point.base, point.curvature_1_m, wheel, clearance_m);
         if (!clear) {
           return tl::unexpected<MotionFailure>(
-              {run.knots[i].state,
-               "wheel " + std::string(kLimbNames[static_cast<std::size_t>(wheel)]) +
-                   " cannot be lifted clear of the ground"});
+              {run.knots[i].state, "wheel " +
+                                       std::string(kLimbNames[static_cast<std::size_t>(wheel)]) +
+                                       " cannot be lifted clear of the ground"});
         }
         needed_rad = std::max(needed_rad, *clear);
       }

@@ -10,6 +10,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMaxRounds = 40;
 constexpr double kMarginWeight = 200.0;  // per m^2 short of comfort, against squared rate shares
+constexpr double kMiddleWeight = 0.02;   // of joints away from the middle of their range
 constexpr double kSecondsPerKnot = 1.5;  // what the machine takes from knot to knot, about
 constexpr double kArmRadiusM = 0.25, kBucketRadiusM = 0.15;
 constexpr double kBucketShare = 0.7;  // of the way from wrist to edge: the rest may touch
@@ -17,7 +18,7 @@ constexpr double kBucketShare = 0.7;  // of the way from wrist to edge: the rest
 struct Cell {
   ArmPosture posture;
   double node_cost = kInfinity;
-  bool judged = false;
+  bool judged = false, accessible = false;
 };
 
 bool above_ground(const StanceGround& ground, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
@@ -68,9 +69,15 @@ class Programme {
     return margin_m;
   }
 
-  [[nodiscard]] double node_cost(double margin_m) const {
+  [[nodiscard]] double node_cost(double margin_m, const ArmPosture& posture) const {
     if (margin_m < settings_.min_margin_m) return kInfinity;
-    return kMarginWeight * square(std::max(0.0, settings_.comfortable_margin_m - margin_m));
+    double cost = kMarginWeight * square(std::max(0.0, settings_.comfortable_margin_m - margin_m));
+    const auto joints = ArmKinematics::joints_of(posture);
+    for (std::size_t k = 1; k < joints.size(); ++k) {
+      const double half = 0.5 * (arm_.upper()[k] - arm_.lower()[k]);
+      cost += kMiddleWeight * square((joints[k] - arm_.lower()[k]) / half - 1.0);
+    }
+    return cost;
   }
 
   void fill(const BucketStance& stance, Cell* cells) const {
@@ -79,7 +86,7 @@ class Programme {
       const auto posture = arm_.reach(p_base, tele(c), attitude(c));
       if (!posture) continue;
       cells[c].posture = *posture;
-      cells[c].node_cost = node_cost(margin(stance, *posture));
+      cells[c].node_cost = node_cost(margin(stance, *posture), *posture);
     }
   }
 
@@ -97,8 +104,8 @@ class Programme {
         if (i > 0 && cell.node_cost < kInfinity) {
           for_each_neighbour(c, [&](std::size_t b) {
             if (cost[b] == kInfinity) return;
-            const double total = cost[b] + cell.node_cost +
-                                 move_cost(table[(i - 1) * n + b].posture, cell.posture);
+            const double total =
+                cost[b] + cell.node_cost + move_cost(table[(i - 1) * n + b].posture, cell.posture);
             if (total >= next[c]) return;
             next[c] = total;
             from[i * n + c] = static_cast<int>(b);
@@ -110,7 +117,8 @@ class Programme {
       std::swap(cost, next);
     }
     way.resize(knots);
-    way.back() = static_cast<std::size_t>(std::min_element(cost.begin(), cost.end()) - cost.begin());
+    way.back() =
+        static_cast<std::size_t>(std::min_element(cost.begin(), cost.end()) - cost.begin());
     for (std::size_t i = knots - 1; i > 0; --i) {
       way[i - 1] = static_cast<std::size_t>(from[i * n + way[i]]);
     }
@@ -149,9 +157,8 @@ class Programme {
 
 // Averages the staircase of cells, as far as every knot still holds.
 void smooth_samples(const Programme& programme, const ArmKinematics& arm, const PostureJudge& judge,
-                    const std::vector<BucketStance>& stances,
-                    const Eigen::Vector3d& p_world_bucket, double min_margin_m,
-                    std::vector<BucketPath::Sample>& samples) {
+                    const std::vector<BucketStance>& stances, const Eigen::Vector3d& p_world_bucket,
+                    double min_margin_m, std::vector<BucketPath::Sample>& samples) {
   constexpr int kRounds = 8;
   for (int round = 0; round < kRounds; ++round) {
     bool changed = false;
@@ -162,9 +169,8 @@ void smooth_samples(const Programme& programme, const ArmKinematics& arm, const 
       const double tele_m = 0.5 * (samples[i].tele_m + a.tele_m + share * (b.tele_m - a.tele_m));
       const double attitude_rad = 0.5 * (samples[i].attitude_rad + a.attitude_rad +
                                          share * (b.attitude_rad - a.attitude_rad));
-      const auto posture =
-          arm.reach(stances[i].footing.T_world_base.inverse() * p_world_bucket, tele_m,
-                    attitude_rad);
+      const auto posture = arm.reach(stances[i].footing.T_world_base.inverse() * p_world_bucket,
+                                     tele_m, attitude_rad);
       if (!posture || programme.margin(stances[i], *posture) < min_margin_m) continue;
       if (round + 1 == kRounds && !judge(i, *posture)) continue;
       samples[i].tele_m = tele_m;
@@ -178,9 +184,9 @@ void smooth_samples(const Programme& programme, const ArmKinematics& arm, const 
 }  // namespace
 
 BucketPath::Sample BucketPath::at(double sigma_m) const {
-  const auto after = std::upper_bound(
-      samples.begin(), samples.end(), sigma_m,
-      [](double sigma, const Sample& sample) { return sigma < sample.sigma_m; });
+  const auto after =
+      std::upper_bound(samples.begin(), samples.end(), sigma_m,
+                       [](double sigma, const Sample& sample) { return sigma < sample.sigma_m; });
   if (after == samples.begin()) return samples.front();
   if (after == samples.end()) return samples.back();
   const Sample& a = *std::prev(after);
@@ -189,10 +195,12 @@ BucketPath::Sample BucketPath::at(double sigma_m) const {
           a.attitude_rad + share * (after->attitude_rad - a.attitude_rad)};
 }
 
-Result<BucketPath, MotionFailure> bucket_path(
-    const ArmKinematics& arm, const StanceGround& ground, const BaseRun& run,
-    const std::vector<BucketStance>& stances, const Eigen::Vector3d& p_world_bucket,
-    const BucketPathSettings& settings, const PostureJudge& judge) {
+Result<BucketPath, MotionFailure> bucket_path(const ArmKinematics& arm, const StanceGround& ground,
+                                              const BaseRun& run,
+                                              const std::vector<BucketStance>& stances,
+                                              const Eigen::Vector3d& p_world_bucket,
+                                              const BucketPathSettings& settings,
+                                              const PostureJudges& judges) {
   const Programme programme(arm, ground, p_world_bucket, settings);
   const std::size_t n = run.knots.size(), cells = programme.num_cells();
   std::vector<Cell> table(n * cells);
@@ -212,7 +220,19 @@ Result<BucketPath, MotionFailure> bucket_path(
       Cell& cell = table[i * cells + way[i]];
       if (!cell.judged) {
         cell.judged = true;
-        if (!judge(i, cell.posture)) cell.node_cost = kInfinity;
+        if (!judges.clear(i, cell.posture)) cell.node_cost = kInfinity;
+        // Where one is not clear, others will not be: better to know at once.
+        for (std::size_t c = 0; c < cells && cell.node_cost == kInfinity; ++c) {
+          Cell& other = table[i * cells + c];
+          if (other.judged || other.node_cost == kInfinity) continue;
+          other.judged = true;
+          if (!judges.clear(i, other.posture)) other.node_cost = kInfinity;
+        }
+      }
+      const bool end = i == 0 || i + 1 == n;
+      if (end && cell.node_cost < kInfinity && !cell.accessible) {
+        cell.accessible = judges.accessible(i, cell.posture);
+        if (!cell.accessible) cell.node_cost = kInfinity;
       }
       passes &= cell.node_cost < kInfinity;
     }
@@ -224,7 +244,7 @@ Result<BucketPath, MotionFailure> bucket_path(
   for (std::size_t i = 0; i < n; ++i) {
     path.samples[i] = {run.knots[i].sigma_m, programme.tele(way[i]), programme.attitude(way[i])};
   }
-  smooth_samples(programme, arm, judge, stances, p_world_bucket, settings.min_margin_m,
+  smooth_samples(programme, arm, judges.clear, stances, p_world_bucket, settings.min_margin_m,
                  path.samples);
   path.min_margin_m = kInfinity;
   for (std::size_t i = 0; i < n; ++i) {

@@ -35,17 +35,23 @@ struct BucketPathSettings {
   double max_attitude_rad = 0.7853981633974483;                       ///< 45 degrees
 };
 
-/// What a posture at a knot must also pass; asked only of postures on the way.
+/// Whether a posture may be taken at a knot.
 using PostureJudge = std::function<bool(std::size_t knot, const ArmPosture& posture)>;
+
+/// What postures must pass beside reach and stability; asked only where the way leads.
+struct PostureJudges {
+  PostureJudge clear;       ///< of ground and own limbs
+  PostureJudge accessible;  ///< at both ends: the arm gets there and away on four wheels
+};
 
 /// The smoothest way of the arm through a grid of telescope length and attitude, one cell a knot,
 /// with margins paid for: dynamic programming over knots, cost in squared shares of joint rates.
-/// Cells of which `judge` says no are left out, and the way is sought again.
+/// Cells of which the judges say no are left out, and the way is sought again.
 ///   stances  one per knot of the run
 ///   errors   the knot beyond which no way goes on
 [[nodiscard]] Result<BucketPath, MotionFailure> bucket_path(
     const ArmKinematics& arm, const StanceGround& ground, const BaseRun& run,
     const std::vector<BucketStance>& stances, const Eigen::Vector3d& p_world_bucket,
-    const BucketPathSettings& settings, const PostureJudge& judge);
+    const BucketPathSettings& settings, const PostureJudges& judges);
 
 }  // namespace wex

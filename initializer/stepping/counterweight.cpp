@@ -32,8 +32,8 @@ Result<std::vector<HeldPosture>, MotionFailure> counterweights(
     Hold longest{knot, -1e9};
     for (const ArmPosture& posture : candidates) {
       const Hold here = hold(posture, knot);
-      if (here.end > longest.end || (here.end == longest.end && best != nullptr &&
-                                     here.margin_m > longest.margin_m)) {
+      if (here.end > longest.end ||
+          (here.end == longest.end && best != nullptr && here.margin_m > longest.margin_m)) {
         longest = here;
         best = &posture;
       }

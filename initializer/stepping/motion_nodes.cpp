@@ -83,8 +83,8 @@ std::optional<NodeFault> find_fault(const MachineModel& machine,
           machine.tree.position(w, machine.arm->contact_body, machine.arm->p_body_contact)
               .head<2>();
     }
-    const double margin_m = hull_margin_m(machine.tree.com(w).head<2>(),
-                                          std::span(contacts.data(), num_contacts));
+    const double margin_m =
+        hull_margin_m(machine.tree.com(w).head<2>(), std::span(contacts.data(), num_contacts));
     if (!(margin_m >= min_margin_m)) {
       return NodeFault{i, "only " + std::to_string(margin_m) + " m of stability"};
     }

@@ -24,9 +24,9 @@ Result<SteppingMotion> SteppingMotion::build(const TerrainMap& terrain, const Ma
   if (!placer) return tl::unexpected<Error>(placer.error());
   auto arm = ArmKinematics::build(machine);
   if (!arm) return tl::unexpected<Error>(arm.error());
-  return SteppingMotion(std::make_unique<Impl>(
-      Impl{{machine, settings, motion, *std::move(placer), *std::move(arm),
-            CollisionModel::build(machine)}}));
+  return SteppingMotion(
+      std::make_unique<Impl>(Impl{{machine, settings, motion, *std::move(placer), *std::move(arm),
+                                   CollisionModel::build(machine)}}));
 }
 
 Result<std::vector<WholeBodyNode>, MotionFailure> SteppingMotion::nodes(
@@ -40,13 +40,13 @@ Result<std::vector<WholeBodyNode>, MotionFailure> SteppingMotion::nodes(
   const MachineModel& machine = impl_->parts.machine;
   turn_wheels(machine, nodes);
   constexpr double kRoundingM = 2e-3;  // margins were judged before nodes were put between knots
-  if (const auto fault = find_fault(
-          machine, nodes, impl_->parts.settings.min_stability_margin_m - kRoundingM)) {
+  if (const auto fault =
+          find_fault(machine, nodes, impl_->parts.settings.min_stability_margin_m - kRoundingM)) {
     return tl::unexpected<MotionFailure>({nodes[fault->node].state, fault->why});
   }
-  const std::vector<double> t_s =
-      node_times_s(machine, nodes,
-                   {impl_->parts.motion.rate_fraction, impl_->parts.motion.max_base_acceleration_m_s2});
+  const std::vector<double> t_s = node_times_s(
+      machine, nodes,
+      {impl_->parts.motion.rate_fraction, impl_->parts.motion.max_base_acceleration_m_s2});
   std::vector<WholeBodyNode> result(nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     result[i] = {t_s[i], std::move(nodes[i].q), nodes[i].contacts};

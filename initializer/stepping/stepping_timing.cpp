@@ -51,10 +51,9 @@ std::vector<double> node_times_s(const MachineModel& machine, const std::vector<
   std::vector<Eigen::VectorXd> rate(n);
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const Eigen::VectorXd step = nodes[i + 1].q - nodes[i].q;
-    length_s[i] =
-        std::max({kShortestS, nodes[i].min_duration_s,
-                  step.head<3>().norm() / nodes[i].base_speed_m_s,
-                  shortest_duration_s(machine, nodes[i].q, nodes[i + 1].q, settings.rate_fraction)});
+    length_s[i] = std::max(
+        {kShortestS, nodes[i].min_duration_s, step.head<3>().norm() / nodes[i].base_speed_m_s,
+         shortest_duration_s(machine, nodes[i].q, nodes[i + 1].q, settings.rate_fraction)});
     rate[i] = step / length_s[i];
     const double fastest = (rate[i].array().abs() / limit.array()).maxCoeff();
     if (fastest > 0.0) acceleration[i] = 1.0 / fastest;

@@ -11,14 +11,14 @@ namespace wex {
 struct MotionNode {
   Eigen::VectorXd q;
   ContactFlags contacts = kDrivingContacts;
-  bool stop = false;              ///< at rest here
-  double min_duration_s = 0.0;    ///< of the interval from here to the next node
-  double base_speed_m_s = 0.6;    ///< at most, in that interval
-  std::size_t state = 0;          ///< of the sequence, for messages
+  bool stop = false;            ///< at rest here
+  double min_duration_s = 0.0;  ///< of the interval from here to the next node
+  double base_speed_m_s = 0.6;  ///< at most, in that interval
+  std::size_t state = 0;        ///< of the sequence, for messages
 };
 
 struct SteppingTimingSettings {
-  double rate_fraction = 0.8;           ///< of every joint's rate limit
+  double rate_fraction = 0.8;  ///< of every joint's rate limit
   double max_base_acceleration_m_s2 = 0.3;
   double max_base_turn_acceleration_rad_s2 = 0.3;
 };

@@ -76,8 +76,7 @@ double WheelPlacer::gap_m(const Eigen::Isometry3d& T_world_base, std::size_t whe
   const Eigen::Vector3d p = T_world_base * table.p_base_wheel(hfe_rad, steer);
   if (!terrain_->known(p.head<2>())) return kUnknown;
   const Eigen::Vector3d axle = T_world_base.linear() * table.axle_base(hfe_rad, steer);
-  const WheelRest rest =
-      wheel_rest(*terrain_, p.head<2>(), axle, leg.radius_m, leg.half_width_m);
+  const WheelRest rest = wheel_rest(*terrain_, p.head<2>(), axle, leg.radius_m, leg.half_width_m);
   const Eigen::Vector3d by_hfe = T_world_base.linear() * table.dp_base_wheel(hfe_rad, steer);
   *slope = by_hfe.z() - rest.by_xy.dot(by_hfe.head<2>());
   return p.z() - rest.height_m;
@@ -154,7 +153,8 @@ Result<WheelPlacement, PlacementFailure> WheelPlacer::place(
     }
     if (steer.angle_rad() < table.steer_lower_rad() ||
         steer.angle_rad() > table.steer_upper_rad()) {
-      return tl::unexpected<PlacementFailure>({static_cast<int>(i), "is beyond its steering limit"});
+      return tl::unexpected<PlacementFailure>(
+          {static_cast<int>(i), "is beyond its steering limit"});
     }
     placement.hfe_rad[i] = hfe;
     placement.steer_rad[i] = steer.angle_rad();
@@ -194,10 +194,11 @@ std::optional<double> WheelPlacer::lowest_clear_rad(const BaseCoordinates& base,
 
 bool WheelPlacer::belly_clear(const BaseCoordinates& base) const {
   const Eigen::Isometry3d T_world_base = T_world_base_from(base);
-  return std::all_of(p_base_belly_.begin(), p_base_belly_.end(), [&](const Eigen::Vector3d& p_base) {
-    const Eigen::Vector3d p = T_world_base * p_base;
-    return p.z() - ground_.height_m(p.x(), p.y()) >= settings_.belly_clearance_m;
-  });
+  return std::all_of(p_base_belly_.begin(), p_base_belly_.end(),
+                     [&](const Eigen::Vector3d& p_base) {
+                       const Eigen::Vector3d p = T_world_base * p_base;
+                       return p.z() - ground_.height_m(p.x(), p.y()) >= settings_.belly_clearance_m;
+                     });
 }
 
 }  // namespace wex

@@ -28,8 +28,8 @@ struct PlacementFailure {
   const char* why = "";
 };
 
-/// Puts wheels where a schedule wants them: on the ground by hip flexion, the disc resting on it, or
-/// lifted clear of it. Refers to terrain and machine, which must outlive it. Immutable, no
+/// Puts wheels where a schedule wants them: on the ground by hip flexion, the disc resting on it,
+/// or lifted clear of it. Refers to terrain and machine, which must outlive it. Immutable, no
 /// allocation in queries, safe for concurrent use.
 class WheelPlacer {
  public:

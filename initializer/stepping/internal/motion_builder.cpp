@@ -7,13 +7,13 @@
 namespace wex {
 namespace {
 
-constexpr double kLimbStep = 0.1;          // rad or m from node to node
+constexpr double kLimbStep = 0.1;  // rad or m from node to node
 constexpr double kRounding = 1e-9;
 constexpr int kMaxDepth = 4;               // of halving between knots
 constexpr double kMiddleWheelRad = 0.004;  // about 6 mm of a standing wheel's height
 constexpr double kMiddleBucketM = 0.003;
 constexpr double kEndStop = 0.005;
-constexpr double kSweepM = 0.05;           // what a wheel may seem to touch on its way down
+constexpr double kSweepM = 0.05;  // what a wheel may seem to touch on its way down
 constexpr double kSweepRad = 0.01;
 constexpr auto kArmIndex = static_cast<std::size_t>(Limb::kArm);
 
@@ -154,8 +154,8 @@ MotionBuilder::Done MotionBuilder::drive(const PreparedRun& run) {
     state_ = knots[i].state;
     if (held + 1 < run.held.size() && run.held[held + 1].first_knot == i) {
       ++held;
-      if (auto moved = move_arm(footing(run.base, i, run.base.support.lifted),
-                                run.held[held].posture);
+      if (auto moved =
+              move_arm(footing(run.base, i, run.base.support.lifted), run.held[held].posture);
           !moved) {
         return moved;
       }
@@ -165,7 +165,8 @@ MotionBuilder::Done MotionBuilder::drive(const PreparedRun& run) {
     const Eigen::VectorXd q_0 = nodes_.back().q;
     const auto q_1 = posture_at(run, knots[i + 1].sigma_m, fixed);
     if (!q_1) return failure(q_1.error());
-    if (auto driven = drive_between(run, fixed, knots[i].sigma_m, q_0, knots[i + 1].sigma_m, *q_1, 0);
+    if (auto driven =
+            drive_between(run, fixed, knots[i].sigma_m, q_0, knots[i + 1].sigma_m, *q_1, 0);
         !driven) {
       return driven;
     }

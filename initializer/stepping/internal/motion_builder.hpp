@@ -62,7 +62,7 @@ class MotionBuilder {
 
   // Nodes.
   void add(const Eigen::VectorXd& q, double duration_s = 0.0);  // at least so long from the last
-  void lift_contact(std::size_t limb);  // after a pause
+  void lift_contact(std::size_t limb);                          // after a pause
   void set_contact(std::size_t limb);
   Done drive(const PreparedRun& run);
   Done drive_between(const PreparedRun& run, const ArmPosture* held, double sigma_0,

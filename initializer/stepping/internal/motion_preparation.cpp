@@ -1,5 +1,5 @@
-// What MotionBuilder decides before it makes nodes: base motion, how high wheels are lifted, how the
-// arm is held.
+// What MotionBuilder decides before it makes nodes: base motion, how high wheels are lifted, how
+// the arm is held.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@
 namespace wex {
 namespace {
 
-constexpr double kTableErrorM = 1e-4;    // added to demands: tables err by less
+constexpr double kTableErrorM = 1e-4;  // added to demands: tables err by less
 constexpr double kBeamClearanceM = 0.05;
 constexpr double kLiftStepRad = 0.05;
 
@@ -22,8 +22,8 @@ std::string name_of(int wheel) {
 Result<WheelPlacement, PlacementFailure> MotionBuilder::placed(const BaseRun::Point& point,
                                                                std::uint8_t lifted,
                                                                const Hips& lifted_hfe_rad) {
-  auto placement = parts_.placer.place(point.base, point.curvature_1_m, lifted, lifted_hfe_rad,
-                                       guess_rad_);
+  auto placement =
+      parts_.placer.place(point.base, point.curvature_1_m, lifted, lifted_hfe_rad, guess_rad_);
   if (!placement) return placement;
   for (std::size_t i = 0; i < kNumWheels; ++i) {
     if ((lifted >> i & 1) == 0) guess_rad_[i] = placement->hfe_rad[i];
@@ -48,8 +48,7 @@ std::optional<std::string> MotionBuilder::judge(const BaseRun& run, const BaseKn
     }
   }
   if (lifted == 0) {
-    const Footing footing =
-        footing_on(knot.base, *placement, 0, nullptr, parts_.placer.mass_kg());
+    const Footing footing = footing_on(knot.base, *placement, 0, nullptr, parts_.placer.mass_kg());
     const double margin_m = footing.margin_m(parts_.arm.moment_base(parts_.arm.transport()));
     if (margin_m < parts_.settings.min_stability_margin_m + kTableErrorM) {
       return "only " + std::to_string(margin_m) + " m of stability on four wheels";
@@ -68,8 +67,8 @@ std::vector<BucketStance> MotionBuilder::stances(const BaseRun& run) {
     const BaseRun::Point point{run.knots[i].base, run.knots[i].curvature_1_m};
     const auto placement = placed(point, run.support.lifted, run.lifted_hfe_rad);
     WEX_EXPECTS(placement.has_value());  // smooth_base has judged it
-    stances[i].footing = footing_on(point.base, *placement, run.support.lifted, bucket,
-                                    parts_.placer.mass_kg());
+    stances[i].footing =
+        footing_on(point.base, *placement, run.support.lifted, bucket, parts_.placer.mass_kg());
     if (i == 0 || i + 1 == run.knots.size()) stances[i].on_wheels = footing(run, i, 0);
   }
   return stances;
@@ -101,8 +100,8 @@ MotionBuilder::Done MotionBuilder::raise_legs_clear(BaseRun& run) {
         const double upper = parts_.placer.upper_rad(static_cast<int>(leg));
         if (hfe >= upper) {
           return tl::unexpected<MotionFailure>(
-              {knot.state, "leg " + std::string(kLimbNames[leg]) +
-                               " cannot be lifted clear of the ground"});
+              {knot.state,
+               "leg " + std::string(kLimbNames[leg]) + " cannot be lifted clear of the ground"});
         }
         hfe = std::min(hfe + kLiftStepRad, upper);
       }
@@ -129,6 +128,16 @@ MotionBuilder::Done MotionBuilder::prepare_support(PreparedRun& run) {
                    parts_.arm.transport());
   }
   const bool bucket = run.base.support.bucket >= 0;
+  // At both ends the bucket comes down and goes up again, on four wheels.
+  const PostureJudge accessible = [&](std::size_t knot, const ArmPosture& standing) {
+    const Footing& on_wheels = *stance[knot].on_wheels;
+    const BaseRun::Point point{run.base.knots[knot].base, run.base.knots[knot].curvature_1_m};
+    const Eigen::VectorXd q_wheels =
+        posture(point, *placed(point, 0, run.base.lifted_hfe_rad), parts_.arm.transport());
+    const auto lowering = mover_.lowering(on_wheels, q_wheels, standing);
+    return lowering.has_value() &&
+           mover_.path(on_wheels, q_wheels, parts_.arm.transport(), lowering->front()).has_value();
+  };
   const PostureJudge clear = [&](std::size_t knot, const ArmPosture& posture) {
     return mover_.fault(stance[knot].footing, q[knot], posture, bucket) == nullptr;
   };
@@ -136,9 +145,10 @@ MotionBuilder::Done MotionBuilder::prepare_support(PreparedRun& run) {
   if (bucket) {
     BucketPathSettings settings;
     settings.min_margin_m = margin_m;
-    auto path = bucket_path(
-        parts_.arm, parts_.placer.ground(), run.base, stance,
-        sequence_.bucket_points[static_cast<std::size_t>(run.base.support.bucket)], settings, clear);
+    auto path =
+        bucket_path(parts_.arm, parts_.placer.ground(), run.base, stance,
+                    sequence_.bucket_points[static_cast<std::size_t>(run.base.support.bucket)],
+                    settings, {clear, accessible});
     if (!path) return tl::unexpected<MotionFailure>(path.error());
     run.bucket = *std::move(path);
     return {};
@@ -147,8 +157,7 @@ MotionBuilder::Done MotionBuilder::prepare_support(PreparedRun& run) {
   for (const BaseKnot& knot : run.base.knots) {
     candidates.push_back(sequence_.states[knot.state].arm);
   }
-  auto held =
-      counterweights(parts_.arm, run.base, stance, candidates, margin_m, clear);
+  auto held = counterweights(parts_.arm, run.base, stance, candidates, margin_m, clear);
   if (!held) return tl::unexpected<MotionFailure>(held.error());
   run.held = *std::move(held);
   return {};
