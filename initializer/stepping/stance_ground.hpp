@@ -11,9 +11,7 @@ namespace wex {
 
 /// The layers that stances are judged by, cell by cell side by side so that a query touches one
 /// cache line. Everything off the map or unknown is infinitely high and infinitely close to an
-/// edge: whatever needs the ground there is refused. Heights are doubled nowhere: a wheel may stand
-/// where the map says traversable, and also beside a rim as long as the ground it touches is flat
-/// itself (the map's slope is fitted over 0.3 m, so it counts the rim of a pit 0.3 m inwards).
+/// edge: whatever needs the ground there is refused.
 class StanceGround {
  public:
   explicit StanceGround(const TerrainMap& terrain);
@@ -25,7 +23,7 @@ class StanceGround {
   }
   /// Gradient of the dilated height over the cell around.
   [[nodiscard]] Eigen::Vector2d dilated_gradient(double x, double y) const noexcept;
-  /// Distance to ground no wheel may stand on, positive on good ground, at most kMaxClear_m.
+  /// Distance to ground no wheel may stand on, positive on good ground (the map's signed distance).
   [[nodiscard]] double clear_m(double x, double y) const noexcept {
     return corner(x, y).mix([](const Cell& cell) { return static_cast<double>(cell.clear_m); });
   }
@@ -39,7 +37,6 @@ class StanceGround {
     return static_cast<double>(cells_[static_cast<std::size_t>(j * size_x_ + i)].highest_m);
   }
 
-  static constexpr double kMaxClear_m = 0.4;
   static constexpr double kNowhere_m = 1e6;  ///< height of what is not known
 
  private:

@@ -100,16 +100,18 @@ Grid slope_of(const PlaneFit& fit) {
 }
 
 /// A tyre can stand here: the ground is gentle, the tyre reaches it before its flanks do, and
-/// nothing unknown lies under it.
+/// nothing unknown lies under it. Gentle is what the tyre rolls over as well: on the rim of a pit
+/// the ground that it touches is level, while a plane fitted to the ground leans into the pit.
 std::vector<std::uint8_t> traversable_mask(const Grid& elevation, const Grid& slope,
-                                           const Grid& dilated, const TerrainSettings& settings) {
+                                           const Grid& dilated, const Grid& rolling_slope,
+                                           const TerrainSettings& settings) {
   std::vector<std::uint8_t> mask =
       terrain_internal::known_within(elevation, settings.wheel_radius_m);
   const auto max_slope = static_cast<float>(settings.max_slope_rad);
   const auto tolerance = static_cast<float>(settings.touch_tolerance_m);
   for (std::size_t cell = 0; cell < mask.size(); ++cell) {
-    const bool stands = slope.values[cell] <= max_slope &&
-                        dilated.values[cell] - elevation.values[cell] <= tolerance;
+    const bool gentle = slope.values[cell] <= max_slope || rolling_slope.values[cell] <= max_slope;
+    const bool stands = gentle && dilated.values[cell] - elevation.values[cell] <= tolerance;
     if (!stands) mask[cell] = 0;
   }
   return mask;
@@ -177,8 +179,10 @@ Result<TerrainMap> TerrainMap::build(Grid elevation, const TerrainSettings& sett
   layers->slope = slope_of(layers->fit);
   layers->dilated = terrain_internal::dilate_by_tyre(elevation, settings.wheel_radius_m);
 
+  const Grid rolling_slope =
+      slope_of(terrain_internal::fit_planes(layers->dilated, settings.fit_radius_m));
   const std::vector<std::uint8_t> mask =
-      traversable_mask(elevation, layers->slope, layers->dilated, settings);
+      traversable_mask(elevation, layers->slope, layers->dilated, rolling_slope, settings);
   layers->traversable = same_shape(elevation, std::vector<float>(mask.begin(), mask.end()));
   layers->signed_distance =
       same_shape(elevation, terrain_internal::signed_distance(mask, elevation.size_x,

@@ -13,6 +13,7 @@ namespace wex::check {
 namespace {
 
 constexpr double kFitRadiusM = 0.3;
+constexpr double kTyreRadiusM = 0.6, kFlankM = 0.12;
 constexpr double kTyrePressM = 0.02;
 constexpr float kNotFitted = -1.0F;
 constexpr int kBlockCells = 8;
@@ -43,6 +44,7 @@ CheckedGround::CheckedGround(Grid elevation) : grid_(std::move(elevation)) {
   last_x_ = grid_.size_x - 1;
   last_y_ = grid_.size_y - 1;
   slope_.assign(grid_.values.size(), kNotFitted);
+  rolled_.assign(grid_.values.size(), std::numeric_limits<float>::quiet_NaN());
   blocks_x_ = (grid_.size_x + kBlockCells - 1) / kBlockCells;
   blocks_y_ = (grid_.size_y + kBlockCells - 1) / kBlockCells;
   block_max_.assign(static_cast<std::size_t>(blocks_x_) * blocks_y_,
@@ -165,29 +167,53 @@ TyreOnGround CheckedGround::tyre(const Eigen::Vector3d& c, const Eigen::Vector3d
   return result;
 }
 
-double CheckedGround::slope_of_cell(int i, int j) {
-  if (i < 0 || j < 0 || i >= grid_.size_x || j >= grid_.size_y) return kUnknown;
-  float& slope = slope_[static_cast<std::size_t>(j) * grid_.size_x + i];
-  if (slope != kNotFitted) return slope;
-  slope = std::numeric_limits<float>::quiet_NaN();
-  if (std::isnan(grid_.at(i, j))) return slope;
+// Underside of a tyre (a ball) that is let down over a sample.
+float CheckedGround::rolled_height_m(int i, int j) {
+  float& rolled = rolled_[static_cast<std::size_t>(j) * grid_.size_x + i];
+  if (!std::isnan(rolled)) return rolled;
+  const int reach = static_cast<int>(kTyreRadiusM * cells_per_m_);
+  double highest = -std::numeric_limits<double>::infinity();
+  for (int v = std::max(0, j - reach); v <= std::min(grid_.size_y - 1, j + reach); ++v) {
+    for (int u = std::max(0, i - reach); u <= std::min(grid_.size_x - 1, i + reach); ++u) {
+      const double square =
+          kTyreRadiusM * kTyreRadiusM - std::pow(std::hypot(u - i, v - j) * grid_.cell_m, 2);
+      if (square <= 0.0 || std::isnan(grid_.at(u, v))) continue;
+      highest = std::max(highest, grid_.at(u, v) + std::sqrt(square) - kTyreRadiusM);
+    }
+  }
+  rolled = static_cast<float>(highest);
+  return rolled;
+}
+
+double CheckedGround::fitted_slope_rad(int i, int j, bool rolled) {
   const int reach = static_cast<int>(kFitRadiusM * cells_per_m_ + 1e-6);
   const double radius_cells = kFitRadiusM * cells_per_m_ + 1e-6;
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   Eigen::Vector3d sums = Eigen::Vector3d::Zero();
   for (int v = std::max(0, j - reach); v <= std::min(grid_.size_y - 1, j + reach); ++v) {
     for (int u = std::max(0, i - reach); u <= std::min(grid_.size_x - 1, i + reach); ++u) {
-      const double height = grid_.at(u, v);
-      if (std::isnan(height) || std::hypot(u - i, v - j) > radius_cells) continue;
+      if (std::isnan(grid_.at(u, v)) || std::hypot(u - i, v - j) > radius_cells) continue;
+      const double height = rolled ? rolled_height_m(u, v) : grid_.at(u, v);
       const Eigen::Vector3d row(1.0, (u - i) * grid_.cell_m, (v - j) * grid_.cell_m);
       squares += row * row.transpose();
       sums += row * (height - grid_.at(i, j));
     }
   }
   const Eigen::FullPivLU<Eigen::Matrix3d> solver(squares);
-  if (!solver.isInvertible()) return slope;
+  if (!solver.isInvertible()) return kUnknown;
   const Eigen::Vector3d plane = solver.solve(sums);
-  slope = static_cast<float>(std::atan(std::hypot(plane[1], plane[2])));
+  return std::atan(std::hypot(plane[1], plane[2]));
+}
+
+double CheckedGround::slope_of_cell(int i, int j) {
+  if (i < 0 || j < 0 || i >= grid_.size_x || j >= grid_.size_y) return kUnknown;
+  float& slope = slope_[static_cast<std::size_t>(j) * grid_.size_x + i];
+  if (slope != kNotFitted) return slope;
+  slope = std::numeric_limits<float>::quiet_NaN();
+  if (std::isnan(grid_.at(i, j))) return slope;
+  // Where the tyre's flanks touch first no wheel stands, however level it is.
+  if (rolled_height_m(i, j) - grid_.at(i, j) > kFlankM) return slope;
+  slope = static_cast<float>(std::min(fitted_slope_rad(i, j, false), fitted_slope_rad(i, j, true)));
   return slope;
 }
 

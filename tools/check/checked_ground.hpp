@@ -47,18 +47,21 @@ class CheckedGround {
   /// At least the highest known sample within `radius_m`; -infinity if there is none.
   [[nodiscard]] double max_height_m(double x, double y, double radius_m) const noexcept;
 
-  /// Slope of the plane through the known samples within 0.3 m of the nearest sample [rad]; NaN
-  /// where that one is unknown or no plane fits.
+  /// Slope of the plane through the known samples within 0.3 m of the nearest sample [rad], of the
+  /// ground or of the heights a tyre rolls over it at, whichever is less: on the rim of a pit what
+  /// the tyre touches is level. NaN where that sample is unknown or no plane fits.
   [[nodiscard]] double slope_rad(double x, double y);
 
-  /// Distance to the nearest sample that is unknown, off the map or steeper than `max_slope_rad`,
-  /// at most `reach_m`.
+  /// Distance to the nearest sample that is unknown, off the map, steeper than `max_slope_rad`, or
+  /// so far below what a tyre rolls over that the tyre cannot touch it, at most `reach_m`.
   [[nodiscard]] double untraversable_distance_m(double x, double y, double max_slope_rad,
                                                 double reach_m);
 
  private:
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   [[nodiscard]] double slope_of_cell(int i, int j);
+  [[nodiscard]] double fitted_slope_rad(int i, int j, bool rolled);
+  [[nodiscard]] float rolled_height_m(int i, int j);
   [[nodiscard]] double lowered_onto_samples(const Eigen::Vector3d& p_world_centre,
                                             const Eigen::Vector3d& axle_world, double radius_m,
                                             double half_width_m) const;
@@ -67,7 +70,8 @@ class CheckedGround {
   double cells_per_m_, last_x_, last_y_;
   int blocks_x_, blocks_y_;
   std::vector<float> block_max_;
-  std::vector<float> slope_;  ///< kNotFitted until asked for
+  std::vector<float> slope_;   ///< kNotFitted until asked for
+  std::vector<float> rolled_;  ///< lowest a tyre of 0.6 m can be over a sample; NaN until asked for
 };
 
 }  // namespace wex::check

@@ -42,16 +42,17 @@ TEST(TerrainMap, JudgesSlopesAgainstThirtyDegrees) {
   }
 }
 
-TEST(TerrainMap, RefusesTheRimOfAStepAndTheRiserWithinTheTyresRadius) {
+TEST(TerrainMap, RefusesTheFootOfARiserWithinTheTyresRadiusButNotTheLevelRimAbove) {
   // 0.5 m up at x = 4.
   const TerrainMap map =
       built(make_grid(80, 80, 0.1, [](double x, double) { return x >= 3.95 ? 0.5 : 0.0; }));
   EXPECT_TRUE(map.traversable_at({3.4, 4.0}));
   EXPECT_FALSE(map.traversable_at({3.5, 4.0}));  // the tyre touches the riser before the floor
   EXPECT_FALSE(map.traversable_at({3.9, 4.0}));
-  EXPECT_FALSE(map.traversable_at({4.0, 4.0}));  // the rim
-  EXPECT_FALSE(map.traversable_at({4.1, 4.0}));
+  EXPECT_TRUE(map.traversable_at({4.0, 4.0}));  // the rim: a tyre there stands on level ground
   EXPECT_TRUE(map.traversable_at({4.3, 4.0}));
+  // The border runs where the ground falls away.
+  EXPECT_NEAR(map.signed_distance_m({4.2, 4.0}), 0.25, 1e-6);
 }
 
 TEST(TerrainMap, TakesALowStepForTraversable) {
@@ -60,15 +61,15 @@ TEST(TerrainMap, TakesALowStepForTraversable) {
   for (double x = 1.0; x < 7.0; x += 0.1) EXPECT_TRUE(map.traversable_at({x, 4.0})) << x;
 }
 
-TEST(TerrainMap, RefusesBothRimsOfAGap) {
+TEST(TerrainMap, EndsAtBothRimsOfAGap) {
   const TerrainMap map = built(
       make_grid(120, 60, 0.1, [](double x, double) { return x > 4.95 && x < 7.05 ? -2.0 : 0.0; }));
-  EXPECT_TRUE(map.traversable_at({4.5, 3.0}));
-  EXPECT_FALSE(map.traversable_at({4.8, 3.0}));
+  EXPECT_TRUE(map.traversable_at({4.9, 3.0}));
+  EXPECT_FALSE(map.traversable_at({5.0, 3.0}));
   EXPECT_FALSE(map.traversable_at({5.3, 3.0}));
   EXPECT_FALSE(map.traversable_at({6.7, 3.0}));
-  EXPECT_FALSE(map.traversable_at({7.2, 3.0}));
-  EXPECT_TRUE(map.traversable_at({7.5, 3.0}));
+  EXPECT_FALSE(map.traversable_at({7.0, 3.0}));
+  EXPECT_TRUE(map.traversable_at({7.1, 3.0}));
 }
 
 TEST(TerrainMap, RefusesTheFloorOfAPitThatNoTyreReaches) {
