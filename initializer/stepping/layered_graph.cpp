@@ -16,7 +16,7 @@ constexpr float kTolerance = 1e-4F;
 // Small costs, in metres of driving: they break ties towards quiet motion.
 constexpr double kHeightChangeCost = 0.15, kPitchChangeCost = 0.1;  // per cell
 constexpr double kOffHeightCost = 0.2,
-                 kOffPitchCost = 0.02;   // per metre and cell off, per metre driven
+                 kOffPitchCost = 0.05;   // per metre and cell off, per metre driven
 constexpr double kStartOffCost = 0.5;    // per metre of height
 constexpr double kNearBucketCost = 2.0;  // per metre driven and metre closer than wanted
 

@@ -16,6 +16,7 @@ constexpr double kBucketBeyondM = 8.0;  // bucket points before the start and af
 constexpr double kBucketApartM = 0.3;   // two points closer than this are one
 constexpr double kHeadingSpacingM =
     0.8;                             // stations that look for bucket points along their heading
+constexpr double kHeadingTurnRad = 0.04;  // ... or have turned by this
 constexpr double kMinBucketM = 3.0;  // ahead of the base
 constexpr double kMaxBucketLateralM = 0.5;
 
@@ -79,11 +80,16 @@ std::vector<Eigen::Vector3d> places_for_bucket(const StanceCheck& check,
   }
   for (double d = spacing_m; d < kBucketBeyondM; d += spacing_m)
     found.offer(stations.back().pose, d);
-  // On arcs the path leaves the heading: the bucket follows the heading.
+  // On arcs the path leaves the heading, which is what the bucket follows.
   last_m = -kHeadingSpacingM;
+  double last_yaw_rad = stations.front().pose.yaw_rad;
   for (const Station& station : stations) {
-    if (station.s_m - last_m < kHeadingSpacingM - 1e-6) continue;
+    if (station.s_m - last_m < kHeadingSpacingM - 1e-6 &&
+        std::abs(station.pose.yaw_rad - last_yaw_rad) < kHeadingTurnRad) {
+      continue;
+    }
     last_m = station.s_m;
+    last_yaw_rad = station.pose.yaw_rad;
     for (double d = kMinBucketM + spacing_m; d < kBucketBeyondM; d += spacing_m) {
       found.offer(station.pose, d);
       found.offer(station.pose, -d);

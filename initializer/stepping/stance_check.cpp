@@ -158,8 +158,7 @@ Stance StanceCheck::stance(const BaseFrame& base, Steered steered,
     const LegSample& highest = sweep.samples.front();
     stance.moment_lifted_base[i] = highest.moment_base;
     const Eigen::Vector3d p = base * highest.p_base_wheel;
-    // Without load the tyre hangs by its sag.
-    const double lowest = p.z() - tables_->radius_m[i] - tables_->sag_m[i] - clearances.swing_m;
+    const double lowest = p.z() - tables_->radius_m[i] - clearances.swing_m;
     if (lowest >= ground_->dilated_m(p.x(), p.y()) &&
         beams_clear(base, highest, highest, 0.0, sweep.num_beam_points, ground_top_m)) {
       stance.swing_clear |= static_cast<std::uint8_t>(1U << i);
