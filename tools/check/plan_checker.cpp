@@ -137,13 +137,15 @@ class Walk {
     if (k > 0) judge_rolling(before, row.contacts, contacts_before);
     judge_posture(row.p_base, row.R_base, row.contacts, true);
     if (k == 0) return;
-    // Over the whole row: what several centimetre steps hide.
+    // A contact that jumps shows as one that slides fast.
+    const double dt_s = row.t_s - motion_.rows[k - 1].t_s + kTimeResolutionS;
     for (std::size_t i = 0; i < kNumWheels; ++i) {
-      if (!row.contacts[i] || !contacts_before[i]) continue;
-      findings_.at(t_s_, wheels_[i].centre.x(), wheels_[i].centre.y());
-      findings_.observe(Rule::kWheelJump, sideways_in_row_[i], limb_name(i));
+      if (row.contacts[i] && contacts_before[i] && dt_s > 0.0) {
+        findings_.at(t_s_, wheels_[i].centre.x(), wheels_[i].centre.y());
+        findings_.observe(Rule::kSlide, slid_in_row_[i].norm() / dt_s, names_[i]);
+      }
+      slid_in_row_[i].setZero();
     }
-    sideways_in_row_.fill(0.0);
   }
 
   void posture_at(const Motion::Row& a, const Motion::Row& b, double share,
@@ -263,7 +265,7 @@ class Walk {
       travel_m_ += std::abs(travel_m);
       side_slip_m_ += std::abs(moved.dot(axle));
       rolling_error_m_ += std::abs(travel_m - radius_m * turned_rad);
-      sideways_in_row_[i] += std::abs(moved.dot(axle));
+      slid_in_row_[i] += Eigen::Vector2d(travel_m - radius_m * turned_rad, moved.dot(axle));
     }
   }
 
@@ -418,7 +420,12 @@ class Walk {
                                             limb_name(4)};
   std::array<Wheel, kNumWheels> wheels_{};
   std::array<Flight, kNumLimbs> flights_{};
-  std::array<double, kNumWheels> sideways_in_row_{};
+  /// Lengthwise, sideways [m].
+  std::array<Eigen::Vector2d, kNumWheels> slid_in_row_ = [] {
+    std::array<Eigen::Vector2d, kNumWheels> zero;
+    zero.fill(Eigen::Vector2d::Zero());
+    return zero;
+  }();
   std::optional<Eigen::Vector3d> bucket_stands_at_;
   std::vector<Eigen::Vector2d> support_;
   CheckedPosture between_;

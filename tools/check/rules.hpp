@@ -33,7 +33,7 @@ enum class Rule {
   kWheelAboveBetween,
   kWheelBelowBetween,
   kTouchDown,
-  kWheelJump,
+  kSlide,
   kSideSlip,
   kRollingError,
   kBucketHeightAtRows,
