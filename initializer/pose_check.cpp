@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "models/terrain/wheel_rest.hpp"
+
 namespace wex {
 namespace {
 
@@ -14,7 +16,9 @@ constexpr double kHeightToleranceM = 1e-5;  // wheel centre against the ground
 constexpr double kBellySpacingM = 0.2;      // two cells of the usual map
 constexpr double kUngroundedCost = 1000.0;  // dominates every other term of Algorithm 1
 constexpr int kMaxGroundingSteps = 40;
-constexpr int kNumHeightSteps = 3;  // 0, 0.2 and 0.4 m above the standing height
+constexpr int kMaxSettlingSteps = 6;
+constexpr double kMinLiftPerRad = 0.3;  // m/rad that hip flexion raises a wheel at least
+constexpr int kNumHeightSteps = 3;      // 0, 0.2 and 0.4 m above the standing height
 constexpr double kHeightStepM = 0.2;
 constexpr double kTableErrorM = 1e-4;  // added to every demand: tables err by less
 
@@ -155,8 +159,9 @@ Rejection PoseCheck::ground_under(const Eigen::Vector2d& p_world_xy) const {
   return Rejection::kNone;
 }
 
-// Hip flexion that puts the wheel centre one radius above the tyre-dilated ground: Newton with the
-// table's slope first, then secant steps kept inside a shrinking bracket. Positive gap: too high.
+// Hip flexion that puts the wheel centre one radius above the tyre-dilated ground, then the disc on
+// it: Newton with the table's slope first, then secant steps kept inside a shrinking bracket.
+// Positive gap: too high.
 PoseCheck::Grounding PoseCheck::ground_leg(const Eigen::Isometry3d& T_world_base, int leg,
                                            const LegTable::Steer& steer) const {
   const LegTable& table = legs_[static_cast<std::size_t>(leg)];
@@ -180,7 +185,7 @@ PoseCheck::Grounding PoseCheck::ground_leg(const Eigen::Isometry3d& T_world_base
       return grounding;
     }
     if (std::abs(gap) < kHeightToleranceM) {
-      grounding.rejection = ground_under(p_world.head<2>());
+      settle(T_world_base, leg, steer, grounding);
       return grounding;
     }
     if ((gap > 0.0 && hfe <= lower) || (gap < 0.0 && hfe >= upper)) break;
@@ -210,6 +215,32 @@ PoseCheck::Grounding PoseCheck::ground_leg(const Eigen::Isometry3d& T_world_base
   grounding.rejection = ground_under(grounding.p_world_wheel.head<2>());
   if (grounding.rejection == Rejection::kNone) grounding.rejection = Rejection::kOutOfReach;
   return grounding;
+}
+
+// From where a ball would rest to where the disc does, a few centimetres on ground tilted along the
+// axle.
+void PoseCheck::settle(const Eigen::Isometry3d& T_world_base, int leg, const LegTable::Steer& steer,
+                       Grounding& grounding) const {
+  const LegTable& table = legs_[static_cast<std::size_t>(leg)];
+  const WheeledLeg& wheel = machine_->legs[static_cast<std::size_t>(leg)];
+  double& hfe = grounding.hfe_rad;
+  for (int i = 0; i < kMaxSettlingSteps; ++i) {
+    const Eigen::Vector3d p_world = T_world_base * table.p_base_wheel(hfe, steer);
+    const Eigen::Vector3d axle_world = T_world_base.linear() * table.axle_base(hfe, steer);
+    const WheelRest rest =
+        wheel_rest(*terrain_, p_world.head<2>(), axle_world, wheel.radius_m, wheel.half_width_m);
+    grounding.p_world_wheel = p_world;
+    const double gap = p_world.z() - rest.height_m;
+    if (std::abs(gap) < kHeightToleranceM) break;
+    const Eigen::Vector3d by_hfe = T_world_base.linear() * table.dp_base_wheel(hfe, steer);
+    hfe -= gap / std::max(kMinLiftPerRad, by_hfe.z() - rest.by_xy.dot(by_hfe.head<2>()));
+  }
+  grounding.rejection = ground_under(grounding.p_world_wheel.head<2>());
+  const bool reached = hfe >= table.hfe_lower_rad() + kJointMarginRad &&
+                       hfe <= table.hfe_upper_rad() - kJointMarginRad;
+  if (grounding.rejection == Rejection::kNone && !reached) {
+    grounding.rejection = Rejection::kOutOfReach;
+  }
 }
 
 PoseCheck::Trial PoseCheck::try_base(const BaseCoordinates& base,

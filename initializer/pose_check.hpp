@@ -101,6 +101,8 @@ class PoseCheck {
             std::array<LegTable, kNumWheels> legs);
   [[nodiscard]] Grounding ground_leg(const Eigen::Isometry3d& T_world_base, int leg,
                                      const LegTable::Steer& steer) const;
+  void settle(const Eigen::Isometry3d& T_world_base, int leg, const LegTable::Steer& steer,
+              Grounding& grounding) const;
   [[nodiscard]] GroundPlane plane_under_wheels(const Pose2& pose) const;
   [[nodiscard]] Rejection ground_under(const Eigen::Vector2d& p_world_xy) const;
   [[nodiscard]] Trial try_base(const BaseCoordinates& base, const Eigen::Isometry3d& T_world_base,

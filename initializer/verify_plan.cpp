@@ -8,6 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include "models/terrain/wheel_rest.hpp"
+
 namespace wex {
 namespace {
 
@@ -70,10 +72,11 @@ class Verifier {
       const Eigen::Vector3d p =
           machine_.tree.position(workspace_, leg.carrier_body, leg.p_carrier_wheel);
       if (!terrain_.known(p.head<2>())) return name + " off the map or over unknown ground";
-      const double error_m = p.z() - leg.radius_m - terrain_.dilated_height_m(p.head<2>());
       if (!contacts[i]) {
-        if (!(error_m >= -kHeightToleranceM)) {
-          return with_number("lifted " + name + " in the ground [m]:", error_m);
+        // Here the tyre is a ball: near steep edges the smooth ground of a resting disc is not.
+        const double height_m = p.z() - leg.radius_m - terrain_.dilated_height_m(p.head<2>());
+        if (!(height_m >= -kHeightToleranceM)) {
+          return with_number("lifted " + name + " in the ground [m]:", height_m);
         }
         continue;
       }
@@ -82,6 +85,10 @@ class Verifier {
       if (!(distance_m >= settings_.min_signed_distance_m - kRounding)) {
         return with_number(name + " close to untraversable ground [m]:", distance_m);
       }
+      const Eigen::Vector3d axle =
+          machine_.tree.direction(workspace_, leg.carrier_body, leg.axle_carrier);
+      const double error_m =
+          p.z() - wheel_rest(terrain_, p.head<2>(), axle, leg.radius_m, leg.half_width_m).height_m;
       verdict.worst_height_error_m = std::max(verdict.worst_height_error_m, std::abs(error_m));
       if (!(std::abs(error_m) <= kHeightToleranceM)) {
         return with_number(name + " off the ground [m]:", error_m);
@@ -191,17 +198,19 @@ PlanVerdict verify_plan(const TerrainMap& terrain, const MachineModel& machine, 
   };
   if (plan.nodes.empty()) return reject(0, "there is none");
   Verifier verifier(terrain, machine, settings);
-  std::optional<Eigen::Vector3d> bucket;  // where it stands
+  bool bucket_stands = false;
+  Eigen::Vector3d bucket = Eigen::Vector3d::Zero();  // where it stands
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
     if (auto what = verifier.violation(plan.nodes[i], verdict)) return reject(i, *std::move(what));
     if (plan.nodes[i].contacts[static_cast<std::size_t>(Limb::kArm)]) {
       const Eigen::Vector3d p = verifier.p_world_bucket();
-      if (bucket && (p - *bucket).norm() > kBucketSlipM) {
-        return reject(i, with_number("the standing bucket moves [m]:", (p - *bucket).norm()));
+      if (!bucket_stands) bucket = p;
+      bucket_stands = true;
+      if ((p - bucket).norm() > kBucketSlipM) {
+        return reject(i, with_number("the standing bucket moves [m]:", (p - bucket).norm()));
       }
-      if (!bucket) bucket = p;
     } else {
-      bucket.reset();
+      bucket_stands = false;
     }
     if (i == 0) continue;
     if (auto what = step_violation(machine, plan.nodes[i - 1], plan.nodes[i], settings)) {

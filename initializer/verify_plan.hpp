@@ -15,7 +15,7 @@ struct PlanVerdict {
   std::string violation;  ///< the first one, empty if ok: what, where, by how much
   std::size_t node = 0;   ///< where it is
   double min_stability_margin_m = 0.0;
-  double worst_height_error_m = 0.0;  ///< wheel centre against dilated ground plus radius
+  double worst_height_error_m = 0.0;  ///< wheel centre against a disc at rest there
 };
 
 /// Checks every node of a plan through the machine's full kinematics, sharing no code with the

@@ -7,6 +7,7 @@
 
 #include "initializer/drive_path.hpp"
 #include "initializer/internal/se2_search.hpp"
+#include "models/terrain/wheel_rest.hpp"
 #include "tests/initializer/test_worlds.hpp"
 
 namespace wex {
@@ -43,7 +44,9 @@ void expect_standing_at_every_node(const TerrainMap& map, const Plan& plan) {
       const Eigen::Vector3d centre =
           machine.tree.position(w, leg.carrier_body, leg.p_carrier_wheel);
       p[i] = centre.head<2>();
-      EXPECT_NEAR(centre.z(), map.dilated_height_m(p[i]) + leg.radius_m, 1e-3);
+      const Eigen::Vector3d axle = machine.tree.direction(w, leg.carrier_body, leg.axle_carrier);
+      EXPECT_NEAR(centre.z(), wheel_rest(map, p[i], axle, leg.radius_m, leg.half_width_m).height_m,
+                  1e-3);
       EXPECT_TRUE(map.traversable_at(p[i]));
       EXPECT_GE(map.signed_distance_m(p[i]), 0.15);
     }
