@@ -21,6 +21,16 @@ constexpr double kResidualM = 0.004;  // wheel centre against the ground, before
 constexpr int kMaxRefinements = 12;
 constexpr int kMaxCounterWeights = 256, kMaxRejectedCounterWeights = 12;
 
+/// How far the middle of the touching patch is from the tyre's middle when the ground is tilted
+/// along the axle: the patch is what is pressed in by a few centimetres.
+double patch_shift_m(double tilt, double half_width_m) {
+  constexpr double kPressedM = 0.02;
+  const double whole_width =
+      kPressedM / (2.0 * half_width_m);  // tilt up to which all of it touches
+  return tilt < whole_width ? half_width_m / 3.0 * tilt / whole_width
+                            : half_width_m - kPressedM / (3.0 * tilt);
+}
+
 }  // namespace
 
 BaseFrame BaseFrame::from(const BaseCoordinates& base) {
@@ -122,12 +132,14 @@ LegFault StanceCheck::lower_leg(const BaseFrame& base, const LegSweep& sweep, in
     if (ground_->clear_m(p_wheel.x(), p_wheel.y()) <= edge_m) return LegFault::kEdge;
     // A disc on ground that is tilted along its axle stands on its edge (wheel_rest).
     const Eigen::Vector2d slope = ground_->dilated_gradient(p_wheel.x(), p_wheel.y());
-    const Eigen::Vector3d normal(-slope.x(), -slope.y(), 1.0);
+    Eigen::Vector3d normal(-slope.x(), -slope.y(), 1.0);
     const double length = normal.norm();
-    const double along_axle = std::abs((base.R_world_base * sample.axle_base).dot(normal)) / length;
-    const double raised_m =
-        length * (radius_m * (std::sqrt(std::max(0.0, 1.0 - along_axle * along_axle)) - 1.0) +
-                  tables_->half_width_m[i] * along_axle);
+    normal /= length;
+    const Eigen::Vector3d axle = base.R_world_base * sample.axle_base;
+    const double along_axle = axle.dot(normal), tilt = std::abs(along_axle);
+    const Eigen::Vector3d in_wheel = normal - along_axle * axle;
+    const double cosine = in_wheel.norm();
+    const double raised_m = length * (radius_m * (cosine - 1.0) + tables_->half_width_m[i] * tilt);
     const double fall_m = up.dot(above.p_base_wheel - sample.p_base_wheel);
     share -= (raised_m - rest) / fall_m;
     if (n == 1 && share < 0.0) return LegFault::kNoGround;
@@ -137,6 +149,9 @@ LegFault StanceCheck::lower_leg(const BaseFrame& base, const LegSweep& sweep, in
     }
     p_base = above.p_base_wheel + share * (sample.p_base_wheel - above.p_base_wheel);
     stance.p_world_wheel[i] = world(p_base);
+    stance.p_world_patch[i] =
+        stance.p_world_wheel[i] - radius_m / cosine * in_wheel -
+        std::copysign(patch_shift_m(tilt, tables_->half_width_m[i]), along_axle) * axle;
     stance.moment_grounded_base[i] =
         above.moment_base + share * (sample.moment_base - above.moment_base);
     return LegFault::kNone;
@@ -178,7 +193,7 @@ Eigen::Vector3d StanceCheck::moment_of_legs(const Stance& stance,
 }
 
 double StanceCheck::margin_on_wheels(const BaseFrame& base, const Stance& stance) const noexcept {
-  const StancePolygon polygon(stance.p_world_wheel, 0);
+  const StancePolygon polygon(stance.p_world_patch, 0);
   const StancePolygon::InBase edges =
       polygon.in_base(base, moment_of_legs(stance, 0), tables_->mass_kg);
   double margin_m = std::numeric_limits<double>::infinity();
@@ -193,7 +208,7 @@ StanceCheck::Balanced StanceCheck::margin_with_counter_weight(const BaseFrame& b
                                                               std::uint8_t lifted) const noexcept {
   const std::size_t count =
       std::min<std::size_t>(tables_->counter_weights.size(), kMaxCounterWeights);
-  const StancePolygon polygon(stance.p_world_wheel, lifted);
+  const StancePolygon polygon(stance.p_world_patch, lifted);
   const StancePolygon::InBase edges =
       polygon.in_base(base, moment_of_legs(stance, lifted), tables_->mass_kg);
   std::array<double, kMaxCounterWeights> margins;
@@ -244,13 +259,13 @@ StanceCheck::OnBucket StanceCheck::margin_on_bucket(const BaseFrame& base, const
   result.turn_rad = place->turn_rad;
   const double c = std::cos(place->turn_rad), s = std::sin(place->turn_rad);
 
-  const StancePolygon polygon(stance.p_world_wheel, lifted, p_world_bucket, base);
+  const StancePolygon polygon(stance.p_world_patch, lifted, p_world_bucket, base);
   const StancePolygon::InBase edges =
       polygon.in_base(base, moment_of_legs(stance, lifted), tables_->mass_kg);
   const bool ask_stretched = stretched_m > -1.0;
   StancePolygon::InBase wheels;
   if (ask_stretched) {
-    wheels = StancePolygon(stance.p_world_wheel, 0)
+    wheels = StancePolygon(stance.p_world_patch, 0)
                  .in_base(base, moment_of_legs(stance, 0), tables_->mass_kg);
   }
   for (const ArmTable::Posture* posture = postures.begin; posture != postures.end; ++posture) {

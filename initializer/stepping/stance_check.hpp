@@ -48,6 +48,7 @@ struct Stance {
   std::uint8_t swing_clear = 0;  ///< lifted fully, wheel and beams clear the ground
   std::array<LegFault, kNumWheels> fault{};
   std::array<Eigen::Vector3d, kNumWheels> p_world_wheel;  ///< standing wheels' centres
+  std::array<Eigen::Vector3d, kNumWheels> p_world_patch;  ///< where their tyres touch
   std::array<Eigen::Vector3d, kNumWheels> moment_grounded_base, moment_lifted_base;  ///< [kg m]
 
   /// All wheels can stand but those lifted, and those are clear.

@@ -17,15 +17,15 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 
 }  // namespace
 
-StancePolygon::StancePolygon(const std::array<Eigen::Vector3d, kNumWheels>& p_world_wheel,
+StancePolygon::StancePolygon(const std::array<Eigen::Vector3d, kNumWheels>& p_world_patch,
                              std::uint8_t lifted) noexcept {
   for (const Limb limb : kCounterClockwise) {
     const auto i = static_cast<std::size_t>(limb);
-    if ((lifted >> i & 1U) == 0) add(p_world_wheel[i]);
+    if ((lifted >> i & 1U) == 0) add(p_world_patch[i]);
   }
 }
 
-StancePolygon::StancePolygon(const std::array<Eigen::Vector3d, kNumWheels>& p_world_wheel,
+StancePolygon::StancePolygon(const std::array<Eigen::Vector3d, kNumWheels>& p_world_patch,
                              std::uint8_t lifted, const Eigen::Vector3d& p_world_bucket,
                              const BaseFrame& base) noexcept {
   // Counter-clockwise from straight ahead: the bucket goes where its bearing from the base is.
@@ -42,11 +42,11 @@ StancePolygon::StancePolygon(const std::array<Eigen::Vector3d, kNumWheels>& p_wo
   for (const Limb limb : kCounterClockwise) {
     const auto i = static_cast<std::size_t>(limb);
     if ((lifted >> i & 1U) != 0) continue;
-    if (!placed && bearing((p_world_wheel[i] - base.p_world_base).head<2>()) > at) {
+    if (!placed && bearing((p_world_patch[i] - base.p_world_base).head<2>()) > at) {
       add(p_world_bucket);
       placed = true;
     }
-    add(p_world_wheel[i]);
+    add(p_world_patch[i]);
   }
   if (!placed) add(p_world_bucket);
   make_convex();

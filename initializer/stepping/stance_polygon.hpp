@@ -15,10 +15,10 @@ struct BaseFrame;
 class StancePolygon {
  public:
   /// Wheels that are not lifted; at least three (contract: fewer give a margin of minus infinity).
-  StancePolygon(const std::array<Eigen::Vector3d, kNumWheels>& p_world_wheel,
+  StancePolygon(const std::array<Eigen::Vector3d, kNumWheels>& p_world_patch,
                 std::uint8_t lifted) noexcept;
   /// The same with the bucket.
-  StancePolygon(const std::array<Eigen::Vector3d, kNumWheels>& p_world_wheel, std::uint8_t lifted,
+  StancePolygon(const std::array<Eigen::Vector3d, kNumWheels>& p_world_patch, std::uint8_t lifted,
                 const Eigen::Vector3d& p_world_bucket, const BaseFrame& base) noexcept;
 
   /// Margin as a function of a moment in the base frame: what moves is added to what is fixed.
