@@ -7,16 +7,10 @@
 namespace wex {
 namespace {
 
-constexpr float kNever = std::numeric_limits<float>::infinity();
 constexpr int kMaxRounds = 40;
 constexpr int kSubPoses = 4;            // checked between two states
 constexpr double kEnoughMarginM = 0.5;  // the best arm posture is looked for later
-constexpr float kTolerance = 1e-4F;
 
-// Small costs, in metres of driving: they break ties towards quiet motion.
-constexpr double kHeightChangeCost = 0.15, kPitchChangeCost = 0.1;  // per cell
-constexpr double kOffHeightCost = 0.2,
-                 kOffPitchCost = 0.05;   // per metre and cell off, per metre driven
 constexpr double kStartOffCost = 0.5;    // per metre of height
 constexpr double kNearBucketCost = 2.0;  // per metre driven and metre closer than wanted
 
@@ -26,9 +20,9 @@ bool later(const auto& a, const auto& b) {
   return a.node > b.node;
 }
 
-std::uint64_t edge_key(std::int32_t from, std::int32_t to) {
-  return static_cast<std::uint64_t>(static_cast<std::uint32_t>(from)) << 32U |
-         static_cast<std::uint32_t>(to);
+std::uint64_t edge_key(std::int32_t from_pose, std::int32_t to_pose, std::size_t support_class) {
+  return static_cast<std::uint64_t>(from_pose) << 34U | static_cast<std::uint64_t>(to_pose) << 4U |
+         support_class;
 }
 
 }  // namespace
@@ -57,12 +51,13 @@ std::int32_t LayeredGraph::record_at(std::size_t layer, int z, int pitch) {
       record_of_pose_[at.first_pose + static_cast<std::size_t>(i * at.num_pitch + j)];
   if (record < 0) {
     record = static_cast<std::int32_t>(records_.size());
-    records_.push_back({static_cast<std::int32_t>(layer),
-                        static_cast<std::int16_t>(z),
-                        static_cast<std::int16_t>(pitch),
-                        false,
-                        {-1, -1, -1},
-                        {}});
+    Record made{};
+    made.layer = static_cast<std::int32_t>(layer);
+    made.pose = static_cast<std::int32_t>(&record - record_of_pose_.data());
+    made.z = static_cast<std::int16_t>(z);
+    made.pitch = static_cast<std::int16_t>(pitch);
+    made.first_node.fill(-1);
+    records_.push_back(made);
   }
   return record;
 }
@@ -162,72 +157,6 @@ bool LayeredGraph::stretched_feasible(std::int32_t record, std::size_t support_c
                  .margin_m >= inflated_margin_m_;
 }
 
-// Cost to go from each layer and class by what legs allow in any height and pitch. Where four
-// wheels stand in the nominal pose everything is taken to be possible: it costs more anyway.
-void LayeredGraph::estimate_costs() {
-  const std::size_t n = grid_->layers.size();
-  std::vector<std::array<bool, kNumSupportClasses>> possible(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const PathLayer& layer = grid_->layers[k];
-    possible[k].fill(false);
-    const std::int32_t nominal = record_at(k, layer.nominal_z, layer.nominal_pitch);
-    if (nominal >= 0 && stance_of(nominal).allows(0)) {
-      possible[k].fill(true);
-      continue;
-    }
-    for (int z = layer.first_z; z < layer.first_z + layer.num_z && !possible[k][0]; ++z) {
-      for (int p = layer.first_pitch; p < layer.first_pitch + layer.num_pitch; ++p) {
-        const Stance& stance = stance_of(record_at(k, z, p));
-        for (std::size_t c = 0; c < kNumSupportClasses; ++c) {
-          possible[k][c] = possible[k][c] || stance.allows(kSupportClasses[c].lifted);
-        }
-        if (possible[k][0]) {
-          possible[k].fill(true);
-          break;
-        }
-      }
-    }
-    for (std::size_t c = 0; c < kNumSupportClasses; ++c) {
-      const int side = kSupportClasses[c].bucket_side;
-      if (side >= 0 && layer.buckets[static_cast<std::size_t>(side)].empty())
-        possible[k][c] = false;
-    }
-  }
-  std::array<float, kNumSupportClasses> none;
-  none.fill(kNever);
-  rest_cost_.assign(n, none);
-  for (std::size_t k = n; k-- > 0;) {
-    std::array<float, kNumSupportClasses>& cost = rest_cost_[k];
-    if (k == n - 1) {
-      if (possible[k][0]) cost[0] = 0.0F;
-    } else {
-      const double step_m = grid_->layers[k + 1].step_m;
-      for (std::size_t c = 0; c < kNumSupportClasses; ++c) {
-        if (!possible[k][c]) continue;
-        const double share = c == 0 ? 1.0 : 1.0 + settings_.stepping_share;
-        cost[c] = rest_cost_[k + 1][c] + static_cast<float>(share * step_m);
-      }
-    }
-    if (!possible[k][0]) continue;
-    for (std::size_t c = 1; c < kNumSupportClasses; ++c) {
-      const double lift =
-          kSupportClasses[c].bucket_side >= 0 ? settings_.bucket_cost_m : settings_.lift_cost_m;
-      cost[0] = std::min(cost[0], cost[c] + static_cast<float>(lift));
-    }
-    for (std::size_t c = 1; c < kNumSupportClasses; ++c) {
-      if (possible[k][c]) {
-        cost[c] = std::min(cost[c], cost[0] + static_cast<float>(settings_.lift_cost_m));
-      }
-    }
-  }
-}
-
-double LayeredGraph::moving_cost(const Record& record) const {
-  const PathLayer& layer = grid_->layers[static_cast<std::size_t>(record.layer)];
-  return kOffHeightCost * grid_->z_step_m * std::abs(record.z - layer.nominal_z) +
-         kOffPitchCost * std::abs(record.pitch - layer.nominal_pitch);
-}
-
 void LayeredGraph::push(std::int32_t index, float cost, std::int32_t parent, bool support_change) {
   Node& node = nodes_[static_cast<std::size_t>(index)];
   if (node.closed || node.feasible == 0) return;
@@ -236,9 +165,9 @@ void LayeredGraph::push(std::int32_t index, float cost, std::int32_t parent, boo
     if (cost >= node.cost - kTolerance) return;
     node.cost = cost;
   }
-  if (!banned_.empty() && parent >= 0 && banned_.count(edge_key(parent, index)) != 0) return;
+  if (!banned_.empty() && parent >= 0 && banned_.count(edge_between(parent, index)) != 0) return;
   const Record& record = records_[static_cast<std::size_t>(node.record)];
-  const float rest = rest_cost_[static_cast<std::size_t>(record.layer)][class_of(node)];
+  const float rest = rest_cost_[static_cast<std::size_t>(record.pose)][class_of(node)];
   if (rest == kNever) return;
   queue_.push_back({cost + rest, cost, index, parent});
   std::push_heap(queue_.begin(), queue_.end(), later<Entry, Entry>);
@@ -266,7 +195,7 @@ void LayeredGraph::push_start(bool from_nominal) {
     for (int p = first.first_pitch; p < first.first_pitch + first.num_pitch; ++p) {
       const std::int32_t record = record_at(0, z, p);
       const double off = kStartOffCost * grid_->z_step_m * std::abs(z - first.nominal_z) +
-                         kPitchChangeCost * std::abs(p - first.nominal_pitch);
+                         QuietCosts::kPitchChange * std::abs(p - first.nominal_pitch);
       push(node_at(record, 0, -1), static_cast<float>(off), -1, false);
     }
   }
@@ -282,7 +211,7 @@ void LayeredGraph::expand(std::int32_t index) {
   for (std::size_t next = k; next <= std::min(k + 1, last_layer_); ++next) {
     const double step_m = next > k ? grid_->layers[next].step_m : 0.0;
     const bool steering_only = next > k && step_m <= 0.0;
-    double along = step_m * (share + moving_cost(record));
+    double along = step_m * (share + off_nominal_cost(grid_->layers[k], record.z, record.pitch));
     if (bucket >= 0) {
       const Eigen::Vector2d at = bucket_in_heading(
           grid_->layers[k].pose, grid_->bucket_points[static_cast<std::size_t>(bucket)]);
@@ -297,8 +226,8 @@ void LayeredGraph::expand(std::int32_t index) {
         if (to < 0) continue;
         const std::int32_t neighbour = node_at(to, support, bucket);
         if (neighbour < 0) continue;
-        const double cost =
-            along + kHeightChangeCost * std::abs(dz) + kPitchChangeCost * std::abs(dp);
+        const double cost = along + QuietCosts::kHeightChange * std::abs(dz) +
+                            QuietCosts::kPitchChange * std::abs(dp);
         push(neighbour, node.cost + static_cast<float>(cost), index, false);
       }
     }
@@ -365,6 +294,14 @@ std::int32_t LayeredGraph::run(bool from_nominal, bool or_furthest, Answer& answ
   return or_furthest ? furthest : -1;
 }
 
+// Poses of a bad edge are bad whatever the bucket point.
+std::uint64_t LayeredGraph::edge_between(std::int32_t from, std::int32_t to) const {
+  const Node& a = nodes_[static_cast<std::size_t>(from)];
+  const Node& b = nodes_[static_cast<std::size_t>(to)];
+  return edge_key(records_[static_cast<std::size_t>(a.record)].pose,
+                  records_[static_cast<std::size_t>(b.record)].pose, class_of(b));
+}
+
 // Poses between two states of one support, with the plain clearances.
 bool LayeredGraph::edge_is_good(const Node& from, const Node& to) const {
   if (from.slot == 0 ? to.slot != 0 : class_of(from) != class_of(to)) return true;
@@ -403,20 +340,18 @@ bool LayeredGraph::edge_is_good(const Node& from, const Node& to) const {
 
 LayeredGraph::Answer LayeredGraph::search(bool from_nominal, bool or_furthest) {
   Answer answer;
-  estimate_costs();
-  if (rest_cost_.front()[0] == kNever) {
-    // Somewhere no support is possible at all.
-    std::size_t gap = 0;
-    for (std::size_t k = 0; k < grid_->layers.size(); ++k) {
-      if (std::all_of(rest_cost_[k].begin(), rest_cost_[k].end(),
-                      [](float cost) { return cost == kNever; })) {
-        gap = k;
-      }
-    }
-    answer.furthest_layer = gap;
+  estimate_costs(true);
+  const PathLayer& first = grid_->layers.front();
+  const auto begin = rest_cost_.begin() + static_cast<std::ptrdiff_t>(first.first_pose);
+  const bool hopeless = std::all_of(begin, begin + static_cast<std::ptrdiff_t>(first.num_poses()),
+                                    [](const auto& costs) { return costs[0] == kNever; });
+  if (hopeless) {
+    // No way even for the legs alone.
+    answer.furthest_layer = dead_layer_ > 0 ? dead_layer_ - 1 : 0;
     answer.num_stances = num_stances_;
     if (!or_furthest) return answer;
-    for (auto& cost : rest_cost_) cost.fill(0.0F);
+    answer.furthest_layer = 0;
+    estimate_costs(false);
   }
   for (int round = 1; round <= kMaxRounds; ++round) {
     answer.num_rounds = round;
@@ -429,7 +364,7 @@ LayeredGraph::Answer LayeredGraph::search(bool from_nominal, bool or_furthest) {
       const std::int32_t parent = nodes_[static_cast<std::size_t>(n)].parent;
       if (!edge_is_good(nodes_[static_cast<std::size_t>(parent)],
                         nodes_[static_cast<std::size_t>(n)])) {
-        banned_.insert(edge_key(parent, n));
+        banned_.insert(edge_between(parent, n));
         all_good = false;
       }
       n = parent;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <unordered_set>
@@ -26,6 +27,13 @@ inline constexpr std::array<SupportClass, 7> kSupportClasses{{{0b0000, -1},
                                                               {0b1100, 1}}};
 inline constexpr std::size_t kNumSupportClasses = kSupportClasses.size();
 
+/// Small costs of the graph, in metres of driving: they break ties towards quiet motion.
+struct QuietCosts {
+  static constexpr double kHeightChange = 0.15, kPitchChange = 0.1;  ///< per cell
+  static constexpr double kOffHeight = 0.2;  ///< per metre off the nominal height and metre driven
+  static constexpr double kOffPitch = 0.05;  ///< per cell off the nominal pitch and metre driven
+};
+
 /// One state of an answer.
 struct GraphState {
   std::size_t layer = 0;
@@ -37,7 +45,7 @@ struct GraphState {
 /// A* over layer x height x pitch x support. Poses are judged when the search takes them up, not
 /// before, with clearances inflated; the answer's edges are checked at poses in between with the
 /// plain ones, bad edges are banned and the search repeated. The heuristic is the cost of the same
-/// graph without continuity of height and pitch, by the legs alone.
+/// graph by the legs alone: without stability, without bucket points.
 class LayeredGraph {
  public:
   LayeredGraph(const StanceCheck& check, const PathGrid& grid, const PlanSettings& plan,
@@ -58,6 +66,8 @@ class LayeredGraph {
   [[nodiscard]] std::string why_not_beyond(std::size_t layer);
 
  private:
+  static constexpr float kNever = std::numeric_limits<float>::infinity();
+  static constexpr float kTolerance = 1e-4F;
   struct Node {
     float cost;
     std::int32_t parent;
@@ -67,7 +77,7 @@ class LayeredGraph {
     bool closed;
   };
   struct Record {
-    std::int32_t layer;
+    std::int32_t layer, pose;
     std::int16_t z, pitch;
     bool judged;
     std::array<std::int32_t, 3> first_node;  // without bucket; bucket ahead; behind
@@ -77,7 +87,6 @@ class LayeredGraph {
     float estimate, cost;
     std::int32_t node, parent;
   };
-  enum class Goal { kLast, kFurthest };
 
   [[nodiscard]] std::int32_t record_at(std::size_t layer, int z, int pitch);  // -1: off the grid
   [[nodiscard]] std::int32_t node_at(std::int32_t record, std::size_t support_class, int bucket);
@@ -87,13 +96,16 @@ class LayeredGraph {
   [[nodiscard]] BaseFrame frame_of(const Record& record) const;
   [[nodiscard]] bool feasible(std::int32_t node);
   [[nodiscard]] bool stretched_feasible(std::int32_t record, std::size_t support_class, int bucket);
-  void estimate_costs();
+  void estimate_costs(bool reach_the_end);
+  void estimate_layer(std::size_t layer);
   [[nodiscard]] std::int32_t run(bool from_nominal, bool or_furthest, Answer& answer);
   void push(std::int32_t node, float cost, std::int32_t parent, bool support_change);
   void expand(std::int32_t node);
   void push_start(bool from_nominal);
+  [[nodiscard]] std::uint64_t edge_between(std::int32_t from, std::int32_t to) const;
   [[nodiscard]] bool edge_is_good(const Node& from, const Node& to) const;
-  [[nodiscard]] double moving_cost(const Record& record) const;
+  /// Of a metre on four wheels, beside the metre itself.
+  [[nodiscard]] double off_nominal_cost(const PathLayer& layer, int z, int pitch) const;
 
   const StanceCheck* check_;
   const PathGrid* grid_;
@@ -106,7 +118,8 @@ class LayeredGraph {
   std::vector<Node> nodes_;
   std::vector<Entry> queue_;
   std::unordered_set<std::uint64_t> banned_;
-  std::vector<std::array<float, kNumSupportClasses>> rest_cost_;  // per layer and class
+  std::vector<std::array<float, kNumSupportClasses>> rest_cost_;  // per pose and class
+  std::size_t dead_layer_ = 0;  // the last from which no support leads to the end
   std::size_t last_layer_ = 0;
   int num_stances_ = 0, num_expanded_ = 0;
 };
