@@ -12,15 +12,16 @@ namespace {
 using Complex = std::complex<double>;
 
 // Grid of contact places in the arm's plane.
-constexpr double kNearest_m = 1.5, kFarthest_m = 9.0, kForwardStep_m = 0.05;
-constexpr double kLowest_m = -4.2, kHighest_m = 1.8, kUpStep_m = 0.1;
+constexpr double kNearest_m = 2.8, kFarthest_m = 8.6, kForwardStep_m = 0.1;
+constexpr double kLowest_m = -4.2, kHighest_m = 1.4, kUpStep_m = 0.1;
 const int kNumForward = static_cast<int>(std::lround((kFarthest_m - kNearest_m) / kForwardStep_m));
 const int kNumUp = static_cast<int>(std::lround((kHighest_m - kLowest_m) / kUpStep_m));
 
 constexpr double kMaxAttitude_rad = std::numbers::pi / 4.0;
-constexpr int kNumAttitudes = 7, kNumTelescopes = 5;
+constexpr std::size_t kNumAttitudes = 7;
+constexpr int kNumTelescopes = 5;
 // The exact posture is computed for a place up to half a cell away from the table's.
-constexpr double kLimitMargin_rad = 0.05, kReachMargin_m = 0.06;
+constexpr double kLimitMargin_rad = 0.05, kReachMargin_m = 0.08;
 
 constexpr int kNumYaws = 24, kNumReaches = 6;
 constexpr double kCounterWeightClear_m = 0.3;  // lowest point, above the base origin
@@ -88,6 +89,8 @@ std::optional<ArmPlane> ArmPlane::of(const MachineModel& machine) {
   plane.dipper_link_ = in_plane(hinge(4)) - in_plane(hinge(2));
   plane.tele_axis_ = in_plane(axis(3));
   plane.bucket_link_ = in_plane(p_contact) - in_plane(hinge(4));
+  plane.boom_length_m_ = std::abs(plane.boom_link_);
+  plane.bucket_length_m_ = std::abs(plane.bucket_link_);
   plane.bucket_moment_ = lever(4);
   plane.dipper_moment_ = lever(2) - lever(4);
   plane.boom_moment_ = lever(1) - lever(2);
@@ -140,31 +143,42 @@ std::optional<ArmPosture> ArmPlane::reach(Complex contact, double tele_m, double
                                           double limit_margin_rad,
                                           double reach_margin_m) const noexcept {
   if (!within(tele_m, tele_, 0.0)) return std::nullopt;
-  const Complex edge =
-      std::abs(bucket_link_) * Complex(std::sin(attitude_rad), -std::cos(attitude_rad));
-  const Complex wrist = contact - edge - boom_hinge_;
+  return reach(contact, tele_m, Complex(std::sin(attitude_rad), -std::cos(attitude_rad)),
+               limit_margin_rad, reach_margin_m);
+}
+
+// Only the joint angles themselves need an arc tangent each.
+std::optional<ArmPosture> ArmPlane::reach(Complex contact, double tele_m, Complex edge_direction,
+                                          double limit_margin_rad,
+                                          double reach_margin_m) const noexcept {
+  const auto times = [](Complex a, Complex b) {
+    return Complex(a.real() * b.real() - a.imag() * b.imag(),
+                   a.real() * b.imag() + a.imag() * b.real());
+  };
+  const auto angle = [](Complex c) { return std::atan2(c.imag(), c.real()); };
+  const Complex wrist = contact - bucket_length_m_ * edge_direction - boom_hinge_;
   const Complex dipper_link = dipper_link_ + tele_m * tele_axis_;
-  const double distance = std::abs(wrist), boom_length = std::abs(boom_link_),
-               dipper_length = std::abs(dipper_link);
-  if (distance > boom_length + dipper_length - reach_margin_m ||
-      distance < std::abs(boom_length - dipper_length) + reach_margin_m + 1e-9) {
-    return std::nullopt;
-  }
-  const double cosine =
-      (boom_length * boom_length + distance * distance - dipper_length * dipper_length) /
-      (2.0 * boom_length * distance);
-  const double rise = std::acos(std::clamp(cosine, -1.0, 1.0));
-  const double boom_direction = std::arg(wrist) + rise;
+  const double dipper_square = std::norm(dipper_link), square = std::norm(wrist);
+  const double dipper_length = std::sqrt(dipper_square);
+  const double farthest = boom_length_m_ + dipper_length - reach_margin_m;
+  const double nearest = std::abs(boom_length_m_ - dipper_length) + reach_margin_m + 1e-9;
+  if (square > farthest * farthest || square < nearest * nearest) return std::nullopt;
+  const double cosine_scaled = 0.5 * (boom_length_m_ * boom_length_m_ + square - dipper_square);
+  const double sine_scaled = std::sqrt(
+      std::max(0.0, boom_length_m_ * boom_length_m_ * square - cosine_scaled * cosine_scaled));
+  // Unit vectors of turned links against the links at zero.
+  const Complex boom = times(times(wrist, {cosine_scaled, sine_scaled}), std::conj(boom_link_)) /
+                       (square * boom_length_m_ * boom_length_m_);
   ArmPosture posture;
   posture.tele_m = tele_m;
-  posture.boom_rad = boom_sign_ * wrap_angle(boom_direction - std::arg(boom_link_));
+  posture.boom_rad = boom_sign_ * angle(boom);
   if (!within(posture.boom_rad, boom_, limit_margin_rad)) return std::nullopt;
-  const Complex boom = turned(boom_sign_ * posture.boom_rad);
-  const double dipper_angle = std::arg((wrist - boom * boom_link_) / (boom * dipper_link));
-  posture.dipper_rad = dipper_sign_ * dipper_angle;
+  const Complex forearm = wrist - times(boom, boom_link_);
+  const Complex dipper = times(forearm, std::conj(dipper_link)) / dipper_square;  // from the base
+  posture.dipper_rad = dipper_sign_ * angle(times(dipper, std::conj(boom)));
   if (!within(posture.dipper_rad, dipper_, limit_margin_rad)) return std::nullopt;
-  const Complex dipper = boom * turned(dipper_angle);
-  posture.ee_pitch_rad = bucket_sign_ * std::arg(edge / (dipper * bucket_link_));
+  posture.ee_pitch_rad =
+      bucket_sign_ * angle(times(edge_direction, std::conj(times(dipper, bucket_link_))));
   if (!within(posture.ee_pitch_rad, ee_pitch_, limit_margin_rad)) return std::nullopt;
   return posture;
 }
@@ -181,6 +195,13 @@ ArmTable::ArmTable(const ArmPlane& plane) : plane_(plane) {
   first_.reserve(static_cast<std::size_t>(kNumForward) * kNumUp + 1);
   first_.push_back(0);
   std::vector<Posture> candidates;
+  std::array<double, kNumAttitudes> attitudes_rad;
+  std::array<Complex, kNumAttitudes> edge_directions;
+  for (std::size_t a = 0; a < kNumAttitudes; ++a) {
+    attitudes_rad[a] = std::lerp(-kMaxAttitude_rad, kMaxAttitude_rad,
+                                 static_cast<double>(a) / (kNumAttitudes - 1));
+    edge_directions[a] = Complex(std::sin(attitudes_rad[a]), -std::cos(attitudes_rad[a]));
+  }
   for (int i = 0; i < kNumForward; ++i) {
     for (int j = 0; j < kNumUp; ++j) {
       const Complex contact(kNearest_m + kForwardStep_m * i, kLowest_m + kUpStep_m * j);
@@ -189,18 +210,16 @@ ArmTable::ArmTable(const ArmPlane& plane) : plane_(plane) {
         const double tele_m =
             std::lerp(plane.tele().lower + kLimitMargin_rad, plane.tele().upper - kLimitMargin_rad,
                       static_cast<double>(t) / (kNumTelescopes - 1));
-        for (int a = 0; a < kNumAttitudes; ++a) {
-          const double attitude_rad = std::lerp(-kMaxAttitude_rad, kMaxAttitude_rad,
-                                                static_cast<double>(a) / (kNumAttitudes - 1));
+        for (std::size_t a = 0; a < kNumAttitudes; ++a) {
           const auto posture =
-              plane.reach(contact, tele_m, attitude_rad, kLimitMargin_rad, kReachMargin_m);
+              plane.reach(contact, tele_m, edge_directions[a], kLimitMargin_rad, kReachMargin_m);
           if (!posture) continue;
           const ArmPlane::Points p = plane.points(*posture);
           candidates.push_back(
               {static_cast<float>(p.moment.real()), static_cast<float>(p.moment.imag()),
                static_cast<float>(p.elbow.real()), static_cast<float>(p.elbow.imag()),
                static_cast<float>(p.wrist.real()), static_cast<float>(p.wrist.imag()),
-               static_cast<float>(tele_m), static_cast<float>(attitude_rad)});
+               static_cast<float>(tele_m), static_cast<float>(attitudes_rad[a])});
         }
       }
       std::sort(candidates.begin(), candidates.end(), [](const Posture& a, const Posture& b) {

@@ -38,6 +38,12 @@ class ArmPlane {
                                                 double attitude_rad, double limit_margin_rad = 0.0,
                                                 double reach_margin_m = 0.0) const noexcept;
 
+  /// The same with the attitude as a unit vector from hinge to edge, the telescope not checked.
+  [[nodiscard]] std::optional<ArmPosture> reach(std::complex<double> contact, double tele_m,
+                                                std::complex<double> edge_direction,
+                                                double limit_margin_rad,
+                                                double reach_margin_m) const noexcept;
+
   /// Cabin yaw at which a point of the base frame lies in the arm's plane, ahead of the cabin, and
   /// its place in that plane; nullopt too close to the cabin's axis.
   struct InPlane {
@@ -76,6 +82,7 @@ class ArmPlane {
   std::complex<double> boom_hinge_, boom_link_, dipper_link_, tele_axis_, bucket_link_;
   // Mass times lever of what each joint carries, without what the next one carries.
   std::complex<double> boom_moment_, dipper_moment_, bucket_moment_;
+  double boom_length_m_ = 0.0, bucket_length_m_ = 0.0;
   double boom_sign_ = 1.0, dipper_sign_ = 1.0, bucket_sign_ = 1.0;
   double arm_mass_kg_ = 0.0, tele_mass_kg_ = 0.0;
   Eigen::Vector3d moment_cabin_ = Eigen::Vector3d::Zero();  // with the arm's constant lateral share
