@@ -245,6 +245,21 @@ bool CollisionModel::clear(const KinematicTree::Workspace& w, Part part,
              .pair < 0;
 }
 
+bool CollisionModel::clear(const KinematicTree::Workspace& w, Part part,
+                           std::bitset<kNumParts> others, double margin_m) const noexcept {
+  const auto wanted = [&](Part one, Part other) {
+    return one == part && others[static_cast<std::size_t>(other)];
+  };
+  return Query(*this, w)
+             .nearest(margin_m, margin_m,
+                      [&](const ShapePair& pair) {
+                        const Part first = shapes_[pair.first].part,
+                                   second = shapes_[pair.second].part;
+                        return wanted(first, second) || wanted(second, first);
+                      })
+             .pair < 0;
+}
+
 double CollisionModel::distance(const KinematicTree::Workspace& w,
                                 const Pair& pair) const noexcept {
   const Capsule &first = capsules_[pair.first], &second = capsules_[pair.second];

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <bitset>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ namespace wex {
 class CollisionModel {
  public:
   enum class Part { kChassis, kCabin, kLF, kRF, kLH, kRH, kArm };
+  static constexpr int kNumParts = 7;
   struct Capsule {
     std::string name;
     int body = -1;
@@ -52,6 +54,9 @@ class CollisionModel {
   [[nodiscard]] bool clear(const KinematicTree::Workspace& w, double margin_m) const noexcept;
   [[nodiscard]] bool clear(const KinematicTree::Workspace& w, Part part,
                            double margin_m) const noexcept;
+  /// One part against some, bit i standing for Part i.
+  [[nodiscard]] bool clear(const KinematicTree::Workspace& w, Part part,
+                           std::bitset<kNumParts> others, double margin_m) const noexcept;
 
   /// Distance of one pair, without and with its exact gradient by q (num_coordinates, overwritten);
   /// at parallel axes one of the subgradients, zero where axes cross. No allocation.
