@@ -10,6 +10,7 @@
 #include "tools/bench/initializer_bench.hpp"
 #include "tools/bench/kinematics_bench.hpp"
 #include "tools/bench/mpc_bench.hpp"
+#include "tools/bench/roadmap_bench.hpp"
 #include "tools/bench/terrain_bench.hpp"
 #include "tools/check/check_command.hpp"
 #include "tools/wex/can_command.hpp"
@@ -18,6 +19,7 @@
 #include "tools/wex/output_folder.hpp"
 #include "tools/wex/pipeline.hpp"
 #include "tools/wex/replay_command.hpp"
+#include "tools/wex/roadmap_command.hpp"
 
 namespace wex::app {
 namespace {
@@ -47,6 +49,8 @@ struct Options {
   CanOptions can;
   ReplayOptions replay;
   check::CheckOptions check;
+  RoadmapOptions roadmap;
+  RoadmapBenchOptions roadmap_bench;
 };
 
 template <typename Parse>
@@ -290,6 +294,29 @@ void add_replay(CLI::App& app, ReplayOptions& replay) {
   add_machine(command, replay.machine);
 }
 
+void add_roadmap(CLI::App& app, RoadmapOptions& roadmap) {
+  CLI::App& command = *app.add_subcommand(
+      "roadmap", "Build, keep and draw the limb roadmaps: roadmap_side.png, roadmap_top.png");
+  command.add_option("--out", roadmap.out, "Folder for the pictures")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command.add_option("--cache", roadmap.cache, "Folder they are kept in [the system's cache]")
+      ->type_name("DIR");
+  RoadmapSettings& settings = roadmap.settings;
+  const auto add_count = [&](const char* name, int& count, const char* help) {
+    command.add_option(name, count, help)
+        ->check(CLI::Range(1, 100000))
+        ->type_name("N")
+        ->capture_default_str();
+  };
+  add_count("--leg-vertices", settings.leg_vertices, "Vertices of each leg");
+  add_count("--arm-vertices", settings.arm_vertices, "Vertices of the arm");
+  command.add_option("--seed", settings.seed, "Seed of the samples")
+      ->type_name("N")
+      ->capture_default_str();
+  add_machine(command, roadmap.machine);
+}
+
 void add_check(CLI::App& app, check::CheckOptions& check) {
   CLI::App& command = *app.add_subcommand(
       "check", "Judge a motion by its files alone, apart from the code that planned it");
@@ -361,6 +388,13 @@ void add_bench(CLI::App& app, Options& options) {
       ->type_name("DIR")
       ->capture_default_str();
   add_initializer_bench(command, options.initializer_bench);
+  CLI::App& roadmaps =
+      *command.add_subcommand("roadmap", "Building and loading of limb roadmaps, arm motions");
+  roadmaps.add_option("--repeats", options.roadmap_bench.repeats, "Repeats of each")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  add_machine(roadmaps, options.roadmap_bench.machine);
   CLI::App& drives = *command.add_subcommand(
       "drive", "Whole runs over several terrains and seeds: success counts and worst figures");
   drives.add_option("--seeds", drive.seeds, "Seeds per terrain")
@@ -446,6 +480,10 @@ int bench_command(const CLI::App& command, const Options& options, std::ostream&
   if (name == "kinematics") return bench_kinematics();
   if (name == "mpc") return bench_mpc();
   if (name == "initializer") return initializer_bench_command(options.initializer_bench, out, err);
+  if (name == "roadmap") {
+    const Result<void> done = bench_roadmap(options.roadmap_bench, out);
+    return done ? 0 : refuse(err, done.error());
+  }
   const Result<int> code = name == "can" ? bench_can(options.can_bench, out, err)
                                          : bench_drive(options.drive_bench, out, err);
   return code ? *code : refuse(err, code.error());
@@ -511,6 +549,7 @@ int run_cli(int argc, const char* const* argv, std::ostream& out, std::ostream& 
   add_can(app, options.can);
   add_replay(app, options.replay);
   add_check(app, options.check);
+  add_roadmap(app, options.roadmap);
   if (const auto problem = unknown_command(app, argc, argv)) {
     return refuse(err, {ErrorCode::kBadInput, *problem + " (see wex --help)"});
   }
@@ -536,6 +575,10 @@ int run_cli(int argc, const char* const* argv, std::ostream& out, std::ostream& 
   }
   if (name == "can") {
     const Result<void> done = run_can(options.can, out);
+    return done ? 0 : refuse(err, done.error());
+  }
+  if (name == "roadmap") {
+    const Result<void> done = run_roadmap(options.roadmap, out);
     return done ? 0 : refuse(err, done.error());
   }
   if (name == "replay") {
