@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
 #include <utility>
 
@@ -17,6 +18,10 @@ constexpr double kRaiseRad = 0.5;  // of the boom, to get out of what is around 
 constexpr std::array<std::pair<double, double>, 4> kDetoursM{
     // of the bucket: up, outwards
     {{0.6, 0.0}, {0.6, 0.5}, {1.2, 0.0}, {1.2, 0.5}}};
+constexpr std::array<double, 4> kAsideRad{0.6, -0.6, 1.0, -1.0};  // slews with the arm unfolded
+constexpr std::array<double, 2> kHighDipperRad{-0.3, 0.3};
+constexpr double kHighPitchRad = -1.2;
+constexpr const char* kTooClose = "the arm or the cabin is too close to the machine itself";
 constexpr double kEndStop = 0.02;
 constexpr double kRiseStepM = 0.05;
 constexpr double kStraightRiseM = 0.1;       // nothing but straight up so far
@@ -58,7 +63,10 @@ ArmMover::ArmMover(const MachineModel& machine, const ArmKinematics& arm,
 const char* ArmMover::fault(const Footing& footing, Eigen::VectorXd& q, const ArmPosture& posture,
                             bool bucket_on_ground) {
   const char* found = find_fault(footing, q, posture, bucket_on_ground);
-  if (found != nullptr) last_fault_ = found;
+  if (found != nullptr) {
+    last_fault_ = found;
+    q_fault_ = q;
+  }
   return found;
 }
 
@@ -86,8 +94,8 @@ const char* ArmMover::find_fault(const Footing& footing, Eigen::VectorXd& q,
     }
   }
   if (!collision_.clear(workspace_, CollisionModel::Part::kArm, motion_.self_collision_m) ||
-      !collision_.clear(workspace_, CollisionModel::Part::kCabin, motion_.self_collision_m)) {
-    return "the arm is too close to the machine itself";
+      !collision_.clear(workspace_, CollisionModel::Part::kCabin, motion_.cabin_clearance_m)) {
+    return kTooClose;
   }
   return nullptr;
 }
@@ -111,31 +119,48 @@ bool ArmMover::append_clear_line(const Footing& footing, const Joints& to,
   return true;
 }
 
-// From anywhere to a folded posture at the same turn: in one go, or by way of somewhere higher and
-// farther out, or with the boom raised and the telescope retracted first.
-bool ArmMover::append_fold(const Footing& footing, const Joints& fold, std::vector<Joints>& path) {
+// From anywhere to a folded posture, turned as it comes: in one go, or by way of somewhere higher
+// and farther out, or with the boom raised and the telescope retracted first, or high over
+// everything, or beside what is in the way: hind claws stand as high as the folded bucket hangs.
+bool ArmMover::append_fold(const Footing& footing, Joints fold, std::vector<Joints>& path) {
   const std::size_t kept = path.size();
   const Joints from = path.back();
+  fold[kTurn] = from[kTurn];
   if (largest_step(from, fold) == 0.0) return true;
+  const auto follow = [&](std::initializer_list<Joints> way) {
+    for (const Joints& joints : way) {
+      if (append_clear_line(footing, joints, path)) continue;
+      path.resize(kept);
+      return false;
+    }
+    return true;
+  };
+  if (follow({fold})) return true;
   const ArmPosture posture = ArmKinematics::posture_of(from);
-  std::vector<std::vector<Joints>> ways{{}};
+  std::vector<Joints> higher;
   for (const auto& [up_m, out_m] : kDetoursM) {
-    if (const auto higher = shifted(footing, posture, up_m, out_m, 0.0, 0.0)) {
-      ways.push_back({ArmKinematics::joints_of(*higher)});
+    if (const auto there = shifted(footing, posture, up_m, out_m, 0.0, 0.0)) {
+      higher.push_back(ArmKinematics::joints_of(*there));
+      if (follow({higher.back(), fold})) return true;
     }
   }
   Joints raised = from;
   raised[kBoom] = std::min(arm_.upper()[kBoom] - kEndStop, raised[kBoom] + kRaiseRad);
   Joints retracted = raised;
   retracted[kTele] = std::min(raised[kTele], arm_.transport().tele_m);
-  ways.push_back({raised});
-  ways.push_back({raised, retracted});
-  for (std::vector<Joints>& way : ways) {
-    way.push_back(fold);
-    bool clear = true;
-    for (const Joints& joints : way) clear = clear && append_clear_line(footing, joints, path);
-    if (clear) return true;
-    path.resize(kept);
+  if (follow({raised, fold}) || follow({raised, retracted, fold})) return true;
+  Joints highest = from, fold_highest = fold;
+  highest[kBoom] = fold_highest[kBoom] = arm_.upper()[kBoom] - kEndStop;
+  if (follow({highest, fold_highest, fold})) return true;
+  higher.push_back(raised);
+  for (const double aside_rad : kAsideRad) {
+    Joints folded = fold;
+    folded[kTurn] += aside_rad;
+    for (const Joints& way : higher) {
+      Joints aside = way;
+      aside[kTurn] += aside_rad;
+      if (follow({way, aside, folded})) return true;
+    }
   }
   return false;
 }
@@ -161,25 +186,32 @@ Result<std::vector<ArmPosture>, std::string> ArmMover::path(const Footing& footi
   if (std::abs(end[kTurn]) > std::numbers::pi + kDirectTurnRad) {
     end[kTurn] -= std::copysign(2.0 * std::numbers::pi, end[kTurn]);
   }
+  if (fault(footing, q_, to, false) != nullptr) {
+    return tl::unexpected<std::string>("the arm cannot be where it should go: " + why());
+  }
   std::vector<Joints> path{begin};
-  bool found = fault(footing, q_, to, false) == nullptr &&
-               std::abs(end[kTurn] - begin[kTurn]) <= kDirectTurnRad &&
+  bool found = std::abs(end[kTurn] - begin[kTurn]) <= kDirectTurnRad &&
                append_clear_line(footing, end, path);
-  const Joints transport = ArmKinematics::joints_of(arm_.transport());
-  Joints higher = transport;
-  higher[kBoom] = arm_.upper()[kBoom] - kEndStop;
-  for (const Joints& fold : {transport, higher}) {
+  // The transport posture, or the boom up and the dipper farther and farther out, until the bucket
+  // swings above everything.
+  std::vector<Joints> folds{ArmKinematics::joints_of(arm_.transport())};
+  Joints high = folds.front();
+  high[kBoom] = arm_.upper()[kBoom] - kEndStop;
+  folds.push_back(high);
+  high[kPitch] = kHighPitchRad;
+  for (const double dipper_rad : kHighDipperRad) {
+    high[kDipper] = dipper_rad;
+    folds.push_back(high);
+  }
+  for (const Joints& fold : folds) {
     if (found) break;
     // Unfolding is folding backwards: what is in the way is near the unfolded end.
     std::vector<Joints> unfolding{end};
     path.resize(1);
-    Joints folded = fold;
-    folded[kTurn] = end[kTurn];
-    found = append_fold(footing, folded, unfolding);
-    folded[kTurn] = begin[kTurn];
-    found = found && append_fold(footing, folded, path) && append_slew(footing, end[kTurn], path);
+    found = append_fold(footing, fold, unfolding) && append_fold(footing, fold, path) &&
+            append_slew(footing, unfolding.back()[kTurn], path);
     if (!found) continue;
-    const double turns_rad = path.back()[kTurn] - end[kTurn];
+    const double turns_rad = path.back()[kTurn] - unfolding.back()[kTurn];
     for (auto joints = unfolding.rbegin() + 1; joints != unfolding.rend(); ++joints) {
       (*joints)[kTurn] += turns_rad;
       path.push_back(*joints);
@@ -244,6 +276,19 @@ Result<std::vector<ArmPosture>, std::string> ArmMover::lowering(const Footing& f
   return upwards;
 }
 
-std::string ArmMover::why() const { return last_fault_; }
+std::string ArmMover::why() {
+  if (last_fault_ != kTooClose) return last_fault_;
+  machine_.tree.update(q_fault_, workspace_);
+  const auto arm = collision_.nearest(workspace_, CollisionModel::Part::kArm);
+  const auto cabin = collision_.nearest(workspace_, CollisionModel::Part::kCabin);
+  const bool cabin_decides =
+      cabin.distance_m - motion_.cabin_clearance_m < arm.distance_m - motion_.self_collision_m;
+  const CollisionModel::Pair& pair =
+      collision_.pairs()[static_cast<std::size_t>(cabin_decides ? cabin.pair : arm.pair)];
+  const auto name = [&](int capsule) {
+    return collision_.capsules()[static_cast<std::size_t>(capsule)].name;
+  };
+  return std::string(last_fault_) + " (" + name(pair.first) + ", " + name(pair.second) + ")";
+}
 
 }  // namespace wex

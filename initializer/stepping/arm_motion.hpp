@@ -44,14 +44,14 @@ class ArmMover {
   const char* find_fault(const Footing& footing, Eigen::VectorXd& q, const ArmPosture& posture,
                          bool bucket_on_ground);
   bool append_clear_line(const Footing& footing, const Joints& to, std::vector<Joints>& path);
-  bool append_fold(const Footing& footing, const Joints& fold, std::vector<Joints>& path);
+  bool append_fold(const Footing& footing, Joints fold, std::vector<Joints>& path);
   bool append_slew(const Footing& footing, double turn_rad, std::vector<Joints>& path);
 
   /// The posture with the bucket moved in the world, and another choice of the null space.
   [[nodiscard]] std::optional<ArmPosture> shifted(const Footing& footing, const ArmPosture& posture,
                                                   double up_m, double out_m, double tele_step_m,
                                                   double attitude_step_rad) const;
-  [[nodiscard]] std::string why() const;
+  [[nodiscard]] std::string why();
 
   const MachineModel& machine_;
   const ArmKinematics& arm_;
@@ -61,7 +61,7 @@ class ArmMover {
   SteppingMotionSettings motion_;
   KinematicTree::Workspace workspace_;
   std::vector<int> arm_capsules_;
-  Eigen::VectorXd q_;
+  Eigen::VectorXd q_, q_fault_;
   const char* last_fault_ = "";
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace wex {
 namespace {
@@ -15,10 +16,37 @@ constexpr double kSecondsPerKnot = 1.5;  // what the machine takes from knot to 
 constexpr double kArmRadiusM = 0.25, kBucketRadiusM = 0.15;
 constexpr double kBucketShare = 0.7;  // of the way from wrist to edge: the rest may touch
 
+// How far a cell got.
+enum class Fault { kReach, kStability, kGround, kNotClear, kNoAccess, kNone };
+
+const char* describe(Fault fault) {
+  switch (fault) {
+    case Fault::kReach:
+      return "the bucket's point is out of the arm's reach";
+    case Fault::kStability:
+      return "the bucket's point gives too little stability";
+    case Fault::kGround:
+      return "the arm would touch the ground with the bucket on its point";
+    case Fault::kNotClear:
+      return "the arm would be too close to the machine or the ground with the bucket on its point";
+    case Fault::kNoAccess:
+      return "the arm does not get to the bucket's point and away";
+    case Fault::kNone:
+      break;
+  }
+  return "the arm cannot follow the base with the bucket standing";
+}
+
 struct Cell {
   ArmPosture posture;
   double node_cost = kInfinity;
+  Fault fault = Fault::kReach;
   bool judged = false, accessible = false;
+
+  void rule_out(Fault why) {
+    node_cost = kInfinity;
+    fault = why;
+  }
 };
 
 bool above_ground(const StanceGround& ground, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
@@ -86,7 +114,11 @@ class Programme {
       const auto posture = arm_.reach(p_base, tele(c), attitude(c));
       if (!posture) continue;
       cells[c].posture = *posture;
-      cells[c].node_cost = node_cost(margin(stance, *posture), *posture);
+      const double margin_m = margin(stance, *posture);
+      cells[c].node_cost = node_cost(margin_m, *posture);
+      cells[c].fault = cells[c].node_cost < kInfinity ? Fault::kNone
+                       : margin_m == -kInfinity       ? Fault::kGround
+                                                      : Fault::kStability;
     }
   }
 
@@ -210,29 +242,32 @@ Result<BucketPath, MotionFailure> bucket_path(const ArmKinematics& arm, const St
   for (int round = 0; way.empty(); ++round) {
     const std::size_t reached = programme.cheapest_way(table, n, way);
     if (reached < n || round == kMaxRounds) {
-      return tl::unexpected<MotionFailure>(
-          {run.knots[std::min(reached, n - 1)].state,
-           reached == 0 ? "no arm posture reaches the bucket's point with enough stability"
-                        : "the arm cannot follow with the bucket standing and enough stability"});
+      const std::size_t knot = std::min(reached, n - 1);
+      const auto furthest =
+          std::max_element(table.begin() + static_cast<std::ptrdiff_t>(knot * cells),
+                           table.begin() + static_cast<std::ptrdiff_t>((knot + 1) * cells),
+                           [](const Cell& a, const Cell& b) { return a.fault < b.fault; });
+      MotionFailure failure{run.knots[knot].state, describe(furthest->fault)};
+      return tl::unexpected<MotionFailure>(std::move(failure));
     }
     bool passes = true;
     for (std::size_t i = 0; i < n; ++i) {
       Cell& cell = table[i * cells + way[i]];
       if (!cell.judged) {
         cell.judged = true;
-        if (!judges.clear(i, cell.posture)) cell.node_cost = kInfinity;
+        if (!judges.clear(i, cell.posture)) cell.rule_out(Fault::kNotClear);
         // Where one is not clear, others will not be: better to know at once.
         for (std::size_t c = 0; c < cells && cell.node_cost == kInfinity; ++c) {
           Cell& other = table[i * cells + c];
           if (other.judged || other.node_cost == kInfinity) continue;
           other.judged = true;
-          if (!judges.clear(i, other.posture)) other.node_cost = kInfinity;
+          if (!judges.clear(i, other.posture)) other.rule_out(Fault::kNotClear);
         }
       }
       const bool end = i == 0 || i + 1 == n;
       if (end && cell.node_cost < kInfinity && !cell.accessible) {
         cell.accessible = judges.accessible(i, cell.posture);
-        if (!cell.accessible) cell.node_cost = kInfinity;
+        if (!cell.accessible) cell.rule_out(Fault::kNoAccess);
       }
       passes &= cell.node_cost < kInfinity;
     }

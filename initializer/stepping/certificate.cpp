@@ -70,7 +70,7 @@ CertifiedSequence Certifier::Impl::sequence_of(const DrivePath& path, PathGrid g
     state.base = grid.base(layer, from.z, from.pitch);
     state.support = {kSupportClasses[from.support_class].lifted, from.bucket};
     const BaseFrame base = BaseFrame::from(state.base);
-    const Stance stance = check.stance(base, layer.steered, plain, layer.ground_top_m);
+    const Stance stance = check.stance(base, layer.steered, plain);
     if (from.bucket >= 0) {
       const Eigen::Vector3d& point = grid.bucket_points[static_cast<std::size_t>(from.bucket)];
       const auto on_bucket =
@@ -118,13 +118,24 @@ CertifiedSequence Certifier::Impl::sequence_of(const DrivePath& path, PathGrid g
 Result<CertifiedSequence, CertificateFailure> Certifier::Impl::certify(
     const DrivePath& path, bool or_furthest, const std::optional<BaseCoordinates>& begin) const {
   WEX_EXPECTS(!path.empty());
+  constexpr double kFineReachM = 0.8;
   PathGrid grid = PathGrid::of(check, path, plan, settings, begin);
   LayeredGraph graph(check, grid, plan, settings);
-  const LayeredGraph::Answer answer = graph.search(!begin.has_value(), or_furthest);
-  if (answer.states.empty()) {
+  LayeredGraph::Answer answer = graph.search(!begin.has_value(), or_furthest);
+  if (answer.states.empty() || answer.hopeless) {
     const PathLayer& layer = grid.layers[answer.furthest_layer];
-    return tl::unexpected<CertificateFailure>(
-        {layer.station, layer.pose, graph.why_not_beyond(answer.furthest_layer)});
+    CertificateFailure failure{layer.station, layer.pose,
+                               graph.why_not_beyond(answer.furthest_layer)};
+    if (answer.hopeless && !or_furthest) {
+      // The place to stand astride may lie between two stations.
+      const double s_m = grid.stations[layer.station].s_m;
+      PathGrid fine =
+          PathGrid::of(check, path, plan, settings, begin, {s_m - kFineReachM, s_m + kFineReachM});
+      LayeredGraph closer(check, fine, plan, settings);
+      const LayeredGraph::Answer second = closer.search(!begin.has_value(), false);
+      if (!second.states.empty()) return sequence_of(path, std::move(fine), second);
+    }
+    if (answer.states.empty()) return tl::unexpected<CertificateFailure>(std::move(failure));
   }
   return sequence_of(path, std::move(grid), answer);
 }

@@ -34,7 +34,7 @@ struct Footing {
   footing.T_world_base = T_world_base_from(base);
   for (std::size_t i = 0; i < kNumWheels; ++i) {
     if ((lifted >> i & 1) != 0) continue;
-    footing.contacts[footing.num_contacts++] = placement.p_world_wheel[i].head<2>();
+    footing.contacts[footing.num_contacts++] = placement.p_world_patch[i].head<2>();
   }
   if (p_world_bucket != nullptr) {
     footing.contacts[footing.num_contacts++] = p_world_bucket->head<2>();

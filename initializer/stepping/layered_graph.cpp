@@ -32,10 +32,10 @@ LayeredGraph::LayeredGraph(const StanceCheck& check, const PathGrid& grid, const
     : check_(&check),
       grid_(&grid),
       settings_(settings),
-      plain_{plan.min_signed_distance_m, StanceClearances{}.swing_m, plan.belly_clearance_m},
-      inflated_(plain_.inflated(settings.inflation_m)),
-      min_margin_m_(plan.min_stability_margin_m),
-      inflated_margin_m_(plan.min_stability_margin_m + settings.inflation_m),
+      plain_{{plan.min_signed_distance_m, StanceClearances{}.swing_m, plan.belly_clearance_m},
+             plan.min_stability_margin_m},
+      inflated_{plain_.clearances.inflated(settings.inflation_m),
+                plain_.margin_m + settings.inflation_m},
       last_layer_(grid.layers.size() - 1) {
   const PathLayer& last = grid.layers.back();
   record_of_pose_.assign(last.first_pose + last.num_poses(), -1);
@@ -111,50 +111,49 @@ const Stance& LayeredGraph::stance_of(std::int32_t index) {
   Record& record = records_[static_cast<std::size_t>(index)];
   if (!record.judged) {
     const PathLayer& layer = grid_->layers[static_cast<std::size_t>(record.layer)];
-    record.stance = check_->stance(frame_of(record), layer.steered, inflated_, layer.ground_top_m);
+    record.stance =
+        check_->stance(frame_of(record), layer.steered, demand_at(record.layer).clearances);
     record.judged = true;
     ++num_stances_;
   }
   return record.stance;
 }
 
+double LayeredGraph::margin_m(const BaseFrame& base, const Stance& stance,
+                              const SupportClass& support, int bucket, double enough_m) const {
+  if (support.bucket_side >= 0) {
+    const Eigen::Vector3d& point = grid_->bucket_points[static_cast<std::size_t>(bucket)];
+    return check_->margin_on_bucket(base, stance, support.lifted, point, enough_m, -2.0).margin_m;
+  }
+  return support.lifted != 0
+             ? check_->margin_with_counter_weight(base, stance, support.lifted).margin_m
+             : check_->margin_on_wheels(base, stance);
+}
+
 bool LayeredGraph::feasible(std::int32_t index) {
   Node& node = nodes_[static_cast<std::size_t>(index)];
   if (node.feasible >= 0) return node.feasible != 0;
   const Stance& stance = stance_of(node.record);
+  const Record& record = records_[static_cast<std::size_t>(node.record)];
   const SupportClass& support = kSupportClasses[class_of(node)];
-  bool ok = stance.allows(support.lifted);
-  if (ok) {
-    const BaseFrame base = frame_of(records_[static_cast<std::size_t>(node.record)]);
-    double margin_m = 0.0;
-    if (support.bucket_side >= 0) {
-      margin_m =
-          check_
-              ->margin_on_bucket(base, stance, support.lifted,
-                                 grid_->bucket_points[static_cast<std::size_t>(bucket_of(node))],
-                                 inflated_margin_m_, -2.0)
-              .margin_m;
-    } else if (support.lifted != 0) {
-      margin_m = check_->margin_with_counter_weight(base, stance, support.lifted).margin_m;
-    } else {
-      margin_m = check_->margin_on_wheels(base, stance);
-    }
-    ok = margin_m >= inflated_margin_m_;
-  }
+  const double wanted_m = demand_at(record.layer).margin_m;
+  const bool ok = stance.allows(support.lifted) && margin_m(frame_of(record), stance, support,
+                                                            bucket_of(node), wanted_m) >= wanted_m;
   node.feasible = ok ? 1 : 0;
   return ok;
 }
 
 // Four wheels and the arm already, or still, stretched to the bucket point.
-bool LayeredGraph::stretched_feasible(std::int32_t record, std::size_t support_class, int bucket) {
-  const Stance& stance = stance_of(record);
+bool LayeredGraph::stretched_feasible(std::int32_t index, std::size_t support_class, int bucket) {
+  const Stance& stance = stance_of(index);
+  const Record& record = records_[static_cast<std::size_t>(index)];
   const SupportClass& support = kSupportClasses[support_class];
-  return stance.allows(0) && stance.allows(support.lifted) &&
-         check_->margin_on_bucket(frame_of(records_[static_cast<std::size_t>(record)]), stance,
-                                  support.lifted,
-                                  grid_->bucket_points[static_cast<std::size_t>(bucket)],
-                                  inflated_margin_m_, inflated_margin_m_)
-                 .margin_m >= inflated_margin_m_;
+  if (!stance.allows(0) || !stance.allows(support.lifted)) return false;
+  const double wanted_m = demand_at(record.layer).margin_m;
+  const auto on_bucket = check_->margin_on_bucket(
+      frame_of(record), stance, support.lifted,
+      grid_->bucket_points[static_cast<std::size_t>(bucket)], wanted_m, wanted_m);
+  return on_bucket.margin_m >= wanted_m;
 }
 
 void LayeredGraph::push(std::int32_t index, float cost, std::int32_t parent, bool support_change) {
@@ -176,19 +175,8 @@ void LayeredGraph::push(std::int32_t index, float cost, std::int32_t parent, boo
 void LayeredGraph::push_start(bool from_nominal) {
   const PathLayer& first = grid_->layers.front();
   if (!from_nominal) {
-    // Where the machine stands already, plain clearances do.
-    const std::int32_t index = record_at(0, 0, 0);
-    if (index < 0) return;
-    Record& record = records_[static_cast<std::size_t>(index)];
-    const BaseFrame base = frame_of(record);
-    record.stance = check_->stance(base, first.steered, plain_, first.ground_top_m);
-    record.judged = true;
-    const std::int32_t node = node_at(index, 0, -1);
-    nodes_[static_cast<std::size_t>(node)].feasible =
-        record.stance.allows(0) && check_->margin_on_wheels(base, record.stance) >= min_margin_m_
-            ? 1
-            : 0;
-    push(node, 0.0F, -1, false);
+    const std::int32_t record = record_at(0, 0, 0);
+    if (record >= 0) push(node_at(record, 0, -1), 0.0F, -1, false);
     return;
   }
   for (int z = first.first_z; z < first.first_z + first.num_z; ++z) {
@@ -314,26 +302,14 @@ bool LayeredGraph::edge_is_good(const Node& from, const Node& to) const {
   BaseCoordinates change = grid_->base(layer_b, b.z, b.pitch) - base_a;
   change[kBaseYaw] = wrap_angle(change[kBaseYaw]);
   const SupportClass& support = kSupportClasses[class_of(from)];
-  const double top_m = std::max(layer_a.ground_top_m, layer_b.ground_top_m);
   for (int k = 1; k <= kSubPoses; ++k) {
     const double share = static_cast<double>(k) / (kSubPoses + 1);
     const BaseFrame base = BaseFrame::from(base_a + share * change);
-    const Stance stance = check_->stance(base, layer_b.steered, plain_, top_m);
-    if (!stance.allows(support.lifted)) return false;
-    double margin_m = 0.0;
-    if (support.bucket_side >= 0) {
-      margin_m =
-          check_
-              ->margin_on_bucket(base, stance, support.lifted,
-                                 grid_->bucket_points[static_cast<std::size_t>(bucket_of(from))],
-                                 min_margin_m_, -2.0)
-              .margin_m;
-    } else if (support.lifted != 0) {
-      margin_m = check_->margin_with_counter_weight(base, stance, support.lifted).margin_m;
-    } else {
-      margin_m = check_->margin_on_wheels(base, stance);
+    const Stance stance = check_->stance(base, layer_b.steered, plain_.clearances);
+    if (!stance.allows(support.lifted) ||
+        margin_m(base, stance, support, bucket_of(from), plain_.margin_m) < plain_.margin_m) {
+      return false;
     }
-    if (margin_m < min_margin_m_) return false;
   }
   return true;
 }
@@ -349,6 +325,7 @@ LayeredGraph::Answer LayeredGraph::search(bool from_nominal, bool or_furthest) {
     // No way even for the legs alone.
     answer.furthest_layer = dead_layer_ > 0 ? dead_layer_ - 1 : 0;
     answer.num_stances = num_stances_;
+    answer.hopeless = true;
     if (!or_furthest) return answer;
     answer.furthest_layer = 0;
     estimate_costs(false);

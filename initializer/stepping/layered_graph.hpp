@@ -55,6 +55,7 @@ class LayeredGraph {
     std::vector<GraphState> states;  ///< empty: none
     double cost = 0.0;
     std::size_t furthest_layer = 0;  ///< reached on whatever support
+    bool hopeless = false;           ///< legs alone cannot get past that layer
     int num_stances = 0, num_expanded = 0, num_rounds = 0;
   };
   /// From the first layer to the last.
@@ -88,6 +89,18 @@ class LayeredGraph {
     std::int32_t node, parent;
   };
 
+  struct Demand {
+    StanceClearances clearances;
+    double margin_m = 0.0;
+  };
+  /// Where the path begins and ends the pose is not the graph's to choose.
+  [[nodiscard]] const Demand& demand_at(std::int32_t layer) const noexcept {
+    const bool end = layer == 0 || static_cast<std::size_t>(layer) == last_layer_;
+    return end ? plain_ : inflated_;
+  }
+  [[nodiscard]] double margin_m(const BaseFrame& base, const Stance& stance,
+                                const SupportClass& support, int bucket, double enough_m) const;
+
   [[nodiscard]] std::int32_t record_at(std::size_t layer, int z, int pitch);  // -1: off the grid
   [[nodiscard]] std::int32_t node_at(std::int32_t record, std::size_t support_class, int bucket);
   [[nodiscard]] std::size_t class_of(const Node& node) const;
@@ -110,8 +123,7 @@ class LayeredGraph {
   const StanceCheck* check_;
   const PathGrid* grid_;
   CertificateSettings settings_;
-  StanceClearances plain_, inflated_;
-  double min_margin_m_, inflated_margin_m_;
+  Demand plain_, inflated_;
 
   std::vector<std::int32_t> record_of_pose_;
   std::vector<Record> records_;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "initializer/stepping/support_polygon.hpp"
+#include "initializer/stepping/tyre_patch.hpp"
 
 namespace wex {
 namespace {
@@ -56,7 +57,7 @@ void turn_wheels(const MachineModel& machine, std::vector<MotionNode>& nodes) {
   }
 }
 
-std::optional<NodeFault> find_fault(const MachineModel& machine,
+std::optional<NodeFault> find_fault(const TerrainMap& terrain, const MachineModel& machine,
                                     const std::vector<MotionNode>& nodes, double min_margin_m) {
   KinematicTree::Workspace w = machine.tree.make_workspace();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -75,8 +76,10 @@ std::optional<NodeFault> find_fault(const MachineModel& machine,
     for (std::size_t k = 0; k < kNumWheels; ++k) {
       if (!node.contacts[k]) continue;
       const WheeledLeg& leg = machine.legs[k];
+      const Eigen::Vector3d p = machine.tree.position(w, leg.carrier_body, leg.p_carrier_wheel);
+      const Eigen::Vector3d axle = machine.tree.direction(w, leg.carrier_body, leg.axle_carrier);
       contacts[num_contacts++] =
-          machine.tree.position(w, leg.carrier_body, leg.p_carrier_wheel).head<2>();
+          tyre_patch(terrain, p, axle, leg.radius_m, leg.half_width_m).head<2>();
     }
     if (node.contacts[static_cast<std::size_t>(Limb::kArm)]) {
       contacts[num_contacts++] =

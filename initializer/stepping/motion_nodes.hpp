@@ -6,6 +6,7 @@
 
 #include "initializer/stepping/stepping_timing.hpp"
 #include "models/excavator/machine_model.hpp"
+#include "models/terrain/terrain_map.hpp"
 
 namespace wex {
 
@@ -18,7 +19,8 @@ struct NodeFault {
   std::size_t node = 0;
   std::string why;
 };
-[[nodiscard]] std::optional<NodeFault> find_fault(const MachineModel& machine,
+[[nodiscard]] std::optional<NodeFault> find_fault(const TerrainMap& terrain,
+                                                  const MachineModel& machine,
                                                   const std::vector<MotionNode>& nodes,
                                                   double min_margin_m);
 

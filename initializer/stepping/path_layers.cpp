@@ -15,9 +15,9 @@ constexpr double kLowestStanceM = 0.2, kHighestStanceM = 1.75;  // base above th
 constexpr double kBucketBeyondM = 8.0;  // bucket points before the start and after the end
 constexpr double kBucketApartM = 0.3;   // two points closer than this are one
 constexpr double kHeadingSpacingM =
-    0.8;                             // stations that look for bucket points along their heading
+    0.8;  // stations that look for bucket points along their heading
 constexpr double kHeadingTurnRad = 0.04;  // ... or have turned by this
-constexpr double kMinBucketM = 3.0;  // ahead of the base
+constexpr double kMinBucketM = 3.0;       // ahead of the base
 constexpr double kMaxBucketLateralM = 0.5;
 
 double heading_x(const Pose2& pose, double forward, double left) {
@@ -106,6 +106,32 @@ std::vector<double> smoothed(const std::vector<Station>& stations,
   return moving_average(s, values, kProfileWindowM);
 }
 
+// Stations at the usual spacing, and at a quarter of it in the fine part.
+std::vector<Station> stations_of(const DrivePath& path, double spacing_m,
+                                 const PathGrid::FinePart& fine) {
+  constexpr double kFineShare = 0.25, kSamePlaceM = 1e-6;
+  const std::vector<Station> coarse = path_stations(path, spacing_m);
+  if (fine.to_m < fine.from_m) return coarse;
+  const auto inside = [&](const Station& station) {
+    return station.s_m >= fine.from_m && station.s_m <= fine.to_m;
+  };
+  std::vector<Station> stations;
+  const auto add = [&](const Station& station) {
+    if (stations.empty() || station.s_m > stations.back().s_m + kSamePlaceM) {
+      stations.push_back(station);
+    }
+  };
+  const std::vector<Station> dense = path_stations(path, kFineShare * spacing_m);
+  auto next = dense.begin();
+  for (const Station& station : coarse) {
+    for (; next != dense.end() && next->s_m < station.s_m - kSamePlaceM; ++next) {
+      if (inside(*next)) add(*next);
+    }
+    if (!inside(station) || station.stop) add(station);
+  }
+  return stations;
+}
+
 }  // namespace
 
 Eigen::Vector2d bucket_in_heading(const Pose2& pose, const Eigen::Vector3d& point) noexcept {
@@ -185,24 +211,11 @@ GroundUnder ground_under(const StanceCheck& check, const Pose2& pose) noexcept {
   return under;
 }
 
-double ground_top_m(const StanceCheck& check, const Pose2& pose) noexcept {
-  constexpr double kForwardM = 3.5, kLeftM = 2.4, kSpacingM = 0.2;
-  const double c = std::cos(pose.yaw_rad), s = std::sin(pose.yaw_rad);
-  double top = -1e9;
-  for (double forward = -kForwardM; forward <= kForwardM; forward += kSpacingM) {
-    for (double left = -kLeftM; left <= kLeftM; left += kSpacingM) {
-      top = std::max(top, check.ground().highest_m(pose.x_m + c * forward - s * left,
-                                                   pose.y_m + s * forward + c * left));
-    }
-  }
-  return top;
-}
-
 PathGrid PathGrid::of(const StanceCheck& check, const DrivePath& path, const PlanSettings& plan,
                       const CertificateSettings& settings,
-                      const std::optional<BaseCoordinates>& begin) {
+                      const std::optional<BaseCoordinates>& begin, const FinePart& fine) {
   PathGrid grid;
-  grid.stations = path_stations(path, plan.subnode_spacing_m);
+  grid.stations = stations_of(path, plan.subnode_spacing_m, fine);
   const std::size_t n = grid.stations.size();
   std::vector<GroundUnder> under;
   std::vector<double> roll, pitch, height;
@@ -244,7 +257,6 @@ PathGrid PathGrid::of(const StanceCheck& check, const DrivePath& path, const Pla
     layer.pose = grid.stations[k].pose;
     layer.steered = after[std::min(k > 0 ? k - 1 : 0, after.size() - 1)];
     layer.step_m = k > 0 ? grid.stations[k].s_m - grid.stations[k - 1].s_m : 0.0;
-    layer.ground_top_m = ground_top_m(check, layer.pose);
     layer.roll_rad = roll[k];
     const auto z_cell = [&](double z) {
       return static_cast<int>(std::lround((z - grid.z_m) / grid.z_step_m));

@@ -22,9 +22,6 @@ struct GroundUnder {
 };
 [[nodiscard]] GroundUnder ground_under(const StanceCheck& check, const Pose2& pose) noexcept;
 
-/// No ground within the machine's reach is higher [m].
-[[nodiscard]] double ground_top_m(const StanceCheck& check, const Pose2& pose) noexcept;
-
 /// One layer of the graph: a station of the path with one steering. Where the curvature switches
 /// there are two layers at one station.
 struct PathLayer {
@@ -32,7 +29,6 @@ struct PathLayer {
   Pose2 pose;
   Steered steered = Steered::kStraight;
   double step_m = 0.0;  ///< from the layer before
-  double ground_top_m = 0.0;
   double roll_rad = 0.0;
   int nominal_z = 0, nominal_pitch = 0;  ///< grid cells that follow the ground
   int first_z = 0, num_z = 0, first_pitch = 0, num_pitch = 0;
@@ -53,9 +49,14 @@ struct PathGrid {
   std::vector<PathLayer> layers;
   std::vector<Eigen::Vector3d> bucket_points;
 
+  /// Distances driven between which stations lie closer together.
+  struct FinePart {
+    double from_m = 0.0, to_m = -1.0;
+  };
   [[nodiscard]] static PathGrid of(const StanceCheck& check, const DrivePath& path,
                                    const PlanSettings& plan, const CertificateSettings& settings,
-                                   const std::optional<BaseCoordinates>& begin);
+                                   const std::optional<BaseCoordinates>& begin,
+                                   const FinePart& fine = {});
 
   [[nodiscard]] BaseCoordinates base(const PathLayer& layer, int z, int pitch) const noexcept {
     BaseCoordinates base;

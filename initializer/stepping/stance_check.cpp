@@ -52,12 +52,12 @@ StanceCheck::StanceCheck(const StanceGround& ground, const StanceTables& tables)
   }
 }
 
-bool StanceCheck::belly_clear(const BaseFrame& base, double clearance_m,
-                              double ground_top_m) const noexcept {
+bool StanceCheck::belly_clear(const BaseFrame& base, double clearance_m) const noexcept {
   const double tilt = base.R_world_base.row(2).head<2>().norm();
   const double lowest =
       base.p_world_base.z() - tables_->belly_below_base_m - belly_radius_m_ * tilt - clearance_m;
-  if (lowest > ground_top_m) return true;
+  const Eigen::Vector3d& p_base_origin = base.p_world_base;
+  if (lowest > ground_->ground_top_m(p_base_origin.x(), p_base_origin.y())) return true;
   for (const Eigen::Vector3d& p_base : p_base_belly_) {
     const Eigen::Vector3d p = base * p_base;
     if (p.z() - clearance_m < ground_->highest_m(p.x(), p.y())) return false;
@@ -66,26 +66,30 @@ bool StanceCheck::belly_clear(const BaseFrame& base, double clearance_m,
 }
 
 bool StanceCheck::beams_clear(const BaseFrame& base, const LegSample& high, const LegSample& low,
-                              double share, int num_points, double ground_top_m) const noexcept {
-  Eigen::Vector3d last = Eigen::Vector3d::Zero();
+                              double share, int num_points) const noexcept {
+  std::array<Eigen::Vector3d, LegSample::kMaxBeamPoints> p;
+  double lowest = 1e9;
   for (int b = 0; b < num_points; ++b) {
     const auto at = static_cast<std::size_t>(b);
-    const Eigen::Vector3d p_base =
-        (1.0 - share) * high.p_base_beam[at] + share * low.p_base_beam[at];
-    const Eigen::Vector3d p = base * p_base;
-    if (b > 0 && std::min(p.z(), last.z()) - kBeamHalfM < ground_top_m) {
-      for (int k = b == 1 ? 0 : 1; k <= kBeamSamples; ++k) {
-        const Eigen::Vector3d x = last + (p - last) * (static_cast<double>(k) / kBeamSamples);
-        if (x.z() - kBeamHalfM < ground_->highest_m(x.x(), x.y())) return false;
-      }
+    p[at] = base * ((1.0 - share) * high.p_base_beam[at] + share * low.p_base_beam[at]);
+    lowest = std::min(lowest, p[at].z());
+  }
+  // A leg lies within the reach of the top about its middle.
+  const Eigen::Vector3d middle = 0.5 * (p[0] + p[static_cast<std::size_t>(num_points) - 1]);
+  if (lowest - kBeamHalfM > ground_->ground_top_m(middle.x(), middle.y())) return true;
+  for (int b = 1; b < num_points; ++b) {
+    const Eigen::Vector3d& from = p[static_cast<std::size_t>(b) - 1];
+    const Eigen::Vector3d step = (p[static_cast<std::size_t>(b)] - from) / kBeamSamples;
+    for (int k = b == 1 ? 0 : 1; k <= kBeamSamples; ++k) {
+      const Eigen::Vector3d x = from + k * step;
+      if (x.z() - kBeamHalfM < ground_->highest_m(x.x(), x.y())) return false;
     }
-    last = p;
   }
   return true;
 }
 
 LegFault StanceCheck::lower_leg(const BaseFrame& base, const LegSweep& sweep, int leg,
-                                double edge_m, double ground_top_m, Stance& stance) const noexcept {
+                                double edge_m, Stance& stance) const noexcept {
   const auto i = static_cast<std::size_t>(leg);
   const double radius_m = tables_->radius_m[i];
   const auto world = [&](const Eigen::Vector3d& p_base) -> Eigen::Vector3d {
@@ -95,7 +99,10 @@ LegFault StanceCheck::lower_leg(const BaseFrame& base, const LegSweep& sweep, in
     return p.z() - radius_m - ground_->dilated_m(p.x(), p.y());
   };
   const Eigen::Vector3d up = base.R_world_base.row(2).transpose();
-  const double skip_above = ground_top_m + radius_m - base.p_world_base.z();
+  // The whole sweep stays within the reach of the top about its middle.
+  const Eigen::Vector3d middle = world(sweep.samples[LegSweep::kSamples / 2].p_base_wheel);
+  const double skip_above =
+      ground_->dilated_top_m(middle.x(), middle.y()) + radius_m - base.p_world_base.z();
 
   double last_gap = 0.0;
   for (int n = 0; n < LegSweep::kSamples; ++n) {
@@ -144,7 +151,7 @@ LegFault StanceCheck::lower_leg(const BaseFrame& base, const LegSweep& sweep, in
     share -= (raised_m - rest) / fall_m;
     if (n == 1 && share < 0.0) return LegFault::kNoGround;
     if (n + 1 == LegSweep::kSamples && share > 1.0) return LegFault::kTooLow;
-    if (!beams_clear(base, above, sample, share, sweep.num_beam_points, ground_top_m)) {
+    if (!beams_clear(base, above, sample, share, sweep.num_beam_points)) {
       return LegFault::kBeam;
     }
     p_base = above.p_base_wheel + share * (sample.p_base_wheel - above.p_base_wheel);
@@ -160,14 +167,14 @@ LegFault StanceCheck::lower_leg(const BaseFrame& base, const LegSweep& sweep, in
 }
 
 Stance StanceCheck::stance(const BaseFrame& base, Steered steered,
-                           const StanceClearances& clearances, double ground_top_m) const noexcept {
+                           const StanceClearances& clearances) const noexcept {
   Stance stance;
-  stance.belly_clear = belly_clear(base, clearances.belly_m, ground_top_m);
+  stance.belly_clear = belly_clear(base, clearances.belly_m);
   if (!stance.belly_clear) return stance;
   for (int leg = 0; leg < kNumWheels; ++leg) {
     const auto i = static_cast<std::size_t>(leg);
     const LegSweep& sweep = tables_->legs[i][static_cast<std::size_t>(steered)];
-    stance.fault[i] = lower_leg(base, sweep, leg, clearances.edge_m, ground_top_m, stance);
+    stance.fault[i] = lower_leg(base, sweep, leg, clearances.edge_m, stance);
     if (stance.fault[i] == LegFault::kNone) stance.grounded |= static_cast<std::uint8_t>(1U << i);
 
     const LegSample& highest = sweep.samples.front();
@@ -175,7 +182,7 @@ Stance StanceCheck::stance(const BaseFrame& base, Steered steered,
     const Eigen::Vector3d p = base * highest.p_base_wheel;
     const double lowest = p.z() - tables_->radius_m[i] - clearances.swing_m;
     if (lowest >= ground_->dilated_m(p.x(), p.y()) &&
-        beams_clear(base, highest, highest, 0.0, sweep.num_beam_points, ground_top_m)) {
+        beams_clear(base, highest, highest, 0.0, sweep.num_beam_points)) {
       stance.swing_clear |= static_cast<std::uint8_t>(1U << i);
     }
   }

@@ -17,7 +17,8 @@ struct BaseFrame {
 
   [[nodiscard]] static BaseFrame from(const BaseCoordinates& base);
   [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& p_base) const noexcept {
-    return R_world_base * p_base + p_world_base;
+    return R_world_base.col(0) * p_base.x() + R_world_base.col(1) * p_base.y() +
+           R_world_base.col(2) * p_base.z() + p_world_base;
   }
 };
 
@@ -66,10 +67,8 @@ class StanceCheck {
   /// Every leg is lowered from its highest position until its wheel meets the ground, so that
   /// lifting it off and putting it down there is clear by construction. The wheel is a disc as in
   /// wheel_rest.
-  ///   ground_top_m  no ground within reach of the machine is higher: what is above needs no look
   [[nodiscard]] Stance stance(const BaseFrame& base, Steered steered,
-                              const StanceClearances& clearances,
-                              double ground_top_m = StanceGround::kNowhere_m) const noexcept;
+                              const StanceClearances& clearances) const noexcept;
 
   /// Smallest margin on four wheels over all cabin yaws, arm folded [m].
   [[nodiscard]] double margin_on_wheels(const BaseFrame& base, const Stance& stance) const noexcept;
@@ -103,14 +102,11 @@ class StanceCheck {
   [[nodiscard]] const StanceTables& tables() const noexcept { return *tables_; }
 
  private:
-  struct Polygon;
-  [[nodiscard]] bool belly_clear(const BaseFrame& base, double clearance_m,
-                                 double ground_top_m) const noexcept;
+  [[nodiscard]] bool belly_clear(const BaseFrame& base, double clearance_m) const noexcept;
   [[nodiscard]] bool beams_clear(const BaseFrame& base, const LegSample& high, const LegSample& low,
-                                 double share, int num_points, double ground_top_m) const noexcept;
+                                 double share, int num_points) const noexcept;
   [[nodiscard]] LegFault lower_leg(const BaseFrame& base, const LegSweep& sweep, int leg,
-                                   double edge_m, double ground_top_m,
-                                   Stance& stance) const noexcept;
+                                   double edge_m, Stance& stance) const noexcept;
   [[nodiscard]] Eigen::Vector3d moment_of_legs(const Stance& stance,
                                                std::uint8_t lifted) const noexcept;
   [[nodiscard]] bool beam_clear(const Eigen::Vector3d& a, const Eigen::Vector3d& b, int samples,

@@ -1,8 +1,48 @@
 #include "initializer/stepping/stance_ground.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace wex {
+namespace {
+
+// Maximum over windows of 2 * radius + 1 values along a line of `size` values `stride` apart,
+// clipped at its ends. Windows double until two of them cover the wanted one.
+void window_max_along(float* values, int size, std::ptrdiff_t stride, int radius,
+                      std::vector<float>& buffer) {
+  constexpr float kLow = -std::numeric_limits<float>::infinity();
+  const int width = 2 * radius + 1;
+  buffer.assign(static_cast<std::size_t>(size + 2 * radius), kLow);
+  for (int i = 0; i < size; ++i) buffer[static_cast<std::size_t>(i + radius)] = values[i * stride];
+  const int total = static_cast<int>(buffer.size());
+  int window = 1;
+  while (2 * window <= width) {
+    for (int i = 0; i + window < total; ++i) {
+      buffer[static_cast<std::size_t>(i)] = std::max(buffer[static_cast<std::size_t>(i)],
+                                                     buffer[static_cast<std::size_t>(i + window)]);
+    }
+    window *= 2;
+  }
+  for (int i = 0; i < size; ++i) {
+    values[i * stride] = std::max(buffer[static_cast<std::size_t>(i)],
+                                  buffer[static_cast<std::size_t>(i + width - window)]);
+  }
+}
+
+std::vector<float> window_max(std::vector<float> values, int size_x, int size_y, int radius) {
+  std::vector<float> buffer;
+  for (int j = 0; j < size_y; ++j) {
+    window_max_along(values.data() + static_cast<std::ptrdiff_t>(j) * size_x, size_x, 1, radius,
+                     buffer);
+  }
+  for (int i = 0; i < size_x; ++i) {
+    window_max_along(values.data() + i, size_y, size_x, radius, buffer);
+  }
+  return values;
+}
+
+}  // namespace
+
 StanceGround::StanceGround(const TerrainMap& terrain) {
   const Grid& height = terrain.elevation();
   const Grid& dilated = terrain.dilated_height();
@@ -21,27 +61,31 @@ StanceGround::StanceGround(const TerrainMap& terrain) {
   cells_.assign(static_cast<std::size_t>(size_x_) * size_y_,
                 Cell{kHuge, kHuge, static_cast<float>(-kNowhere_m), kHuge});
   const auto known_or_huge = [](float value) { return std::isnan(value) ? kHuge : value; };
-  // Highest of three along x, then of three rows.
-  std::vector<float> row_max(static_cast<std::size_t>(size_x_) * size_y_, kHuge);
-  for (int j = 0; j < height.size_y; ++j) {
-    for (int i = 0; i < height.size_x; ++i) {
-      float highest = known_or_huge(height.at(i, j));
-      if (i > 0) highest = std::max(highest, known_or_huge(height.at(i - 1, j)));
-      if (i + 1 < height.size_x) highest = std::max(highest, known_or_huge(height.at(i + 1, j)));
-      row_max[static_cast<std::size_t>(j + 1) * size_x_ + i + 1] = highest;
-    }
-  }
+  std::vector<float> ground(cells_.size(), kHuge), rolled(cells_.size(), kHuge);
   for (int j = 0; j < height.size_y; ++j) {
     for (int i = 0; i < height.size_x; ++i) {
       const std::size_t from = static_cast<std::size_t>(j) * height.size_x + i;
       const std::size_t to = static_cast<std::size_t>(j + 1) * size_x_ + i + 1;
-      float highest = row_max[to];
-      if (j > 0) highest = std::max(highest, row_max[to - size_x_]);
-      if (j + 1 < height.size_y) highest = std::max(highest, row_max[to + size_x_]);
       if (std::isnan(height.values[from])) continue;
-      cells_[to] = {known_or_huge(dilated.values[from]), highest, clear.values[from],
-                    height.values[from]};
+      ground[to] = height.values[from];
+      rolled[to] = known_or_huge(dilated.values[from]);
+      cells_[to] = {rolled[to], kHuge, clear.values[from], height.values[from]};
     }
+  }
+  const std::vector<float> highest = window_max(ground, size_x_, size_y_, 1);
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+    cells_[cell].highest_m = highest[cell];
+  }
+  const auto cells_within = [&](double reach_m) {
+    return static_cast<int>(std::ceil(reach_m * per_m_)) + 1;
+  };
+  const std::vector<float> rolled_top =
+      window_max(std::move(rolled), size_x_, size_y_, cells_within(kDilatedTopReach_m));
+  const std::vector<float> ground_top =
+      window_max(std::move(ground), size_x_, size_y_, cells_within(kGroundTopReach_m));
+  tops_.reserve(cells_.size());
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+    tops_.push_back({rolled_top[cell], ground_top[cell]});
   }
 }
 

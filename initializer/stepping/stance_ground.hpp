@@ -32,16 +32,26 @@ class StanceGround {
   }
   /// Highest ground of the 3 x 3 cells around: what links and chassis must stay clear of.
   [[nodiscard]] double highest_m(double x, double y) const noexcept {
-    const int i = static_cast<int>(std::clamp((x - x_m_) * per_m_ + 0.5, 0.0, max_i_));
-    const int j = static_cast<int>(std::clamp((y - y_m_) * per_m_ + 0.5, 0.0, max_j_));
-    return static_cast<double>(cells_[static_cast<std::size_t>(j * size_x_ + i)].highest_m);
+    return static_cast<double>(cells_[nearest(x, y)].highest_m);
   }
+
+  /// No tyre-dilated height within 0.8 m along x and y is higher; no ground within 1.2 m.
+  [[nodiscard]] double dilated_top_m(double x, double y) const noexcept {
+    return static_cast<double>(tops_[nearest(x, y)].dilated_m);
+  }
+  [[nodiscard]] double ground_top_m(double x, double y) const noexcept {
+    return static_cast<double>(tops_[nearest(x, y)].ground_m);
+  }
+  static constexpr double kDilatedTopReach_m = 0.8, kGroundTopReach_m = 1.2;
 
   static constexpr double kNowhere_m = 1e6;  ///< height of what is not known
 
  private:
   struct Cell {
     float dilated_m, highest_m, clear_m, height_m;
+  };
+  struct Top {
+    float dilated_m, ground_m;
   };
   struct Corner {
     const Cell* south;
@@ -63,8 +73,15 @@ class StanceGround {
     return {south, south + size_x_, u - i, v - j};
   }
 
+  [[nodiscard]] std::size_t nearest(double x, double y) const noexcept {
+    const int i = static_cast<int>(std::clamp((x - x_m_) * per_m_ + 0.5, 0.0, max_i_));
+    const int j = static_cast<int>(std::clamp((y - y_m_) * per_m_ + 0.5, 0.0, max_j_));
+    return static_cast<std::size_t>(j * size_x_ + i);
+  }
+
   // One ring of unknown cells all around, so that queries off the map end there.
   std::vector<Cell> cells_;
+  std::vector<Top> tops_;
   int size_x_ = 0, size_y_ = 0;
   double x_m_ = 0.0, y_m_ = 0.0, per_m_ = 10.0;  // of the outermost ring's first cell
   double max_u_ = 0.0, max_v_ = 0.0, max_i_ = 0.0, max_j_ = 0.0;

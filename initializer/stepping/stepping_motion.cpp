@@ -25,8 +25,8 @@ Result<SteppingMotion> SteppingMotion::build(const TerrainMap& terrain, const Ma
   auto arm = ArmKinematics::build(machine);
   if (!arm) return tl::unexpected<Error>(arm.error());
   return SteppingMotion(
-      std::make_unique<Impl>(Impl{{machine, settings, motion, *std::move(placer), *std::move(arm),
-                                   CollisionModel::build(machine)}}));
+      std::make_unique<Impl>(Impl{{terrain, machine, settings, motion, *std::move(placer),
+                                   *std::move(arm), CollisionModel::build(machine)}}));
 }
 
 Result<std::vector<WholeBodyNode>, MotionFailure> SteppingMotion::nodes(
@@ -41,7 +41,8 @@ Result<std::vector<WholeBodyNode>, MotionFailure> SteppingMotion::nodes(
   turn_wheels(machine, nodes);
   constexpr double kRoundingM = 2e-3;  // margins were judged before nodes were put between knots
   if (const auto fault =
-          find_fault(machine, nodes, impl_->parts.settings.min_stability_margin_m - kRoundingM)) {
+          find_fault(impl_->parts.terrain, machine, nodes,
+                     impl_->parts.settings.min_stability_margin_m - kRoundingM)) {
     return tl::unexpected<MotionFailure>({nodes[fault->node].state, fault->why});
   }
   const std::vector<double> t_s = node_times_s(

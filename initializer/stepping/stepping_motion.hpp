@@ -19,6 +19,7 @@ struct MotionFailure {
 struct SteppingMotionSettings {
   double swing_clearance_m = 0.10;      ///< lifted tyres and links above the ground
   double self_collision_m = 0.10;       ///< between limbs, and limb and chassis
+  double cabin_clearance_m = 0.02;      ///< of the cabin from wheels; its capsules are wide
   double max_node_step_m = 0.2;         ///< of the base; limbs move at most 0.1 m (0.1 rad) a node
   double bucket_approach_m = 0.3;       ///< the bucket comes down this far vertically ...
   double bucket_lowering_m_s = 0.05;    ///< ... at this speed, and stands still for a moment

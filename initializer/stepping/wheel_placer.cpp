@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "initializer/stepping/arm_kinematics.hpp"
+#include "initializer/stepping/tyre_patch.hpp"
 #include "models/terrain/wheel_rest.hpp"
 
 namespace wex {
@@ -158,7 +159,12 @@ Result<WheelPlacement, PlacementFailure> WheelPlacer::place(
     }
     placement.hfe_rad[i] = hfe;
     placement.steer_rad[i] = steer.angle_rad();
-    placement.p_world_wheel[i] = T_world_base * table.p_base_wheel(hfe, steer);
+    if (!up) {
+      const WheeledLeg& leg = machine_->legs[i];
+      placement.p_world_patch[i] = tyre_patch(
+          *terrain_, T_world_base * table.p_base_wheel(hfe, steer),
+          T_world_base.linear() * table.axle_base(hfe, steer), leg.radius_m, leg.half_width_m);
+    }
     placement.moment_base += table.moment_base(hfe, steer);
   }
   return placement;

@@ -18,7 +18,7 @@ namespace wex {
 /// Legs of one base pose: hip flexion and steering, and what they mean for stability.
 struct WheelPlacement {
   std::array<double, kNumWheels> hfe_rad{}, steer_rad{};
-  std::array<Eigen::Vector3d, kNumWheels> p_world_wheel;
+  std::array<Eigen::Vector3d, kNumWheels> p_world_patch;  ///< where tyres touch; lifted: unused
   Eigen::Vector3d moment_base;  ///< mass times centre of mass of all but cabin and arm [kg m]
 };
 

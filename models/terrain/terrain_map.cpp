@@ -99,9 +99,28 @@ Grid slope_of(const PlaneFit& fit) {
   return same_shape(fit.height, std::move(slope));
 }
 
+/// The cell where a tyre that stands over a cell touches the ground: uphill by the normal. At a
+/// kink, as at the foot of a riser, it touches on the gentler side.
+std::size_t touched_cell(const Grid& dilated, int i, int j, double radius_m) {
+  const auto slope_along = [&](int di, int dj) {
+    const auto height = [&](int sign) {
+      return dilated.at(std::clamp(i + sign * di, 0, dilated.size_x - 1),
+                        std::clamp(j + sign * dj, 0, dilated.size_y - 1));
+    };
+    const double back = height(0) - height(-1), ahead = height(1) - height(0);
+    return (std::abs(back) < std::abs(ahead) ? back : ahead) / dilated.cell_m;
+  };
+  const Eigen::Vector2d gradient(slope_along(1, 0), slope_along(0, 1));
+  const Eigen::Vector2d here(i, j);
+  if (!gradient.allFinite()) return nearest_cell(dilated, here);
+  const double uphill_cells = radius_m / dilated.cell_m / std::sqrt(1.0 + gradient.squaredNorm());
+  return nearest_cell(dilated, here + uphill_cells * gradient);
+}
+
 /// A tyre can stand here: the ground is gentle, the tyre reaches it before its flanks do, and
-/// nothing unknown lies under it. Gentle is what the tyre rolls over as well: on the rim of a pit
-/// the ground that it touches is level, while a plane fitted to the ground leans into the pit.
+/// nothing unknown lies under it. Gentle is the ground where the tyre touches it, which on a slope
+/// is not below its centre, or what it rolls over: on the rim of a pit that is level, while a plane
+/// fitted to the ground leans into the pit.
 std::vector<std::uint8_t> traversable_mask(const Grid& elevation, const Grid& slope,
                                            const Grid& dilated, const Grid& rolling_slope,
                                            const TerrainSettings& settings) {
@@ -109,10 +128,15 @@ std::vector<std::uint8_t> traversable_mask(const Grid& elevation, const Grid& sl
       terrain_internal::known_within(elevation, settings.wheel_radius_m);
   const auto max_slope = static_cast<float>(settings.max_slope_rad);
   const auto tolerance = static_cast<float>(settings.touch_tolerance_m);
-  for (std::size_t cell = 0; cell < mask.size(); ++cell) {
-    const bool gentle = slope.values[cell] <= max_slope || rolling_slope.values[cell] <= max_slope;
-    const bool stands = gentle && dilated.values[cell] - elevation.values[cell] <= tolerance;
-    if (!stands) mask[cell] = 0;
+  std::size_t cell = 0;
+  for (int j = 0; j < elevation.size_y; ++j) {
+    for (int i = 0; i < elevation.size_x; ++i, ++cell) {
+      if (mask[cell] == 0) continue;
+      const bool gentle =
+          rolling_slope.values[cell] <= max_slope ||
+          slope.values[touched_cell(dilated, i, j, settings.wheel_radius_m)] <= max_slope;
+      if (!gentle || !(dilated.values[cell] - elevation.values[cell] <= tolerance)) mask[cell] = 0;
+    }
   }
   return mask;
 }

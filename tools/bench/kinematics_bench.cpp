@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "models/excavator/collision_model.hpp"
 #include "models/excavator/machine_model.hpp"
 #include "models/types/cpu_clock.hpp"
 
@@ -37,6 +38,40 @@ Percentiles time_us(const std::function<void()>& call) {
 
 void print(const char* what, const Percentiles& us) {
   std::printf("%-34s %8.3f %8.3f %8.3f %8.3f\n", what, us.least, us.median, us.p90, us.p99);
+}
+
+/// Over many postures: how much is near what decides the time.
+void bench_collision(const MachineModel& machine, double& sum) {
+  const CollisionModel collision = CollisionModel::build(machine);
+  constexpr int kPostures = 200;
+  constexpr double kMargin_m = 0.10;
+  std::mt19937 generator(2);
+  std::vector<KinematicTree::Workspace> postures(kPostures, machine.tree.make_workspace());
+  for (KinematicTree::Workspace& posture : postures) {
+    Eigen::VectorXd q = Eigen::VectorXd::Zero(machine.num_coordinates());
+    for (int i = 0; i < machine.num_joints(); ++i) {
+      const Joint& joint = machine.joints[i];
+      std::uniform_real_distribution<double> within(std::max(joint.lower, -3.0),
+                                                    std::min(joint.upper, 3.0));
+      q[kNumBaseCoordinates + i] = within(generator);
+    }
+    machine.tree.update(q, posture);
+  }
+  std::size_t next = 0;
+  const auto posture = [&]() -> const KinematicTree::Workspace& {
+    return postures[next++ % postures.size()];
+  };
+  Eigen::VectorXd gradient(machine.num_coordinates());
+  std::printf("%zu capsules, %zu pairs; random postures\n", collision.capsules().size(),
+              collision.pairs().size());
+  print("nearest of all pairs", time_us([&] { sum += collision.nearest(posture()).distance_m; }));
+  print("clear by 0.10 m", time_us([&] { sum += collision.clear(posture(), kMargin_m); }));
+  print("arm clear by 0.10 m",
+        time_us([&] { sum += collision.clear(posture(), CollisionModel::Part::kArm, kMargin_m); }));
+  print("one distance with gradient", time_us([&] {
+          const CollisionModel::Pair& pair = collision.pairs()[next * 7 % collision.pairs().size()];
+          sum += collision.distance(machine.tree, posture(), pair, gradient);
+        }));
 }
 
 }  // namespace
@@ -104,6 +139,7 @@ int bench_kinematics() {
           tree.com_hessian(w, weights, hessian);
           keep(hessian(3, 3));
         }));
+  bench_collision(*machine, sum);
   std::printf("check sum %g\n", sum);
   return 0;
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kFitRadiusM = 0.3;
 constexpr double kTyreRadiusM = 0.6, kFlankM = 0.12;
-constexpr double kTyrePressM = 0.02;
+constexpr double kTyrePressM = 0.04;  // about the static sag
 constexpr float kNotFitted = -1.0F;
 constexpr int kBlockCells = 8;
 // Samples of the tyre's lower half: about 3 cm along the tread, 5 to 10 cm across.
@@ -43,8 +43,8 @@ CheckedGround::CheckedGround(Grid elevation) : grid_(std::move(elevation)) {
   cells_per_m_ = 1.0 / grid_.cell_m;
   last_x_ = grid_.size_x - 1;
   last_y_ = grid_.size_y - 1;
-  slope_.assign(grid_.values.size(), kNotFitted);
-  rolled_.assign(grid_.values.size(), std::numeric_limits<float>::quiet_NaN());
+  for (std::vector<float>& slopes : slope_) slopes.assign(grid_.values.size(), kNotFitted);
+  rolled_.assign(grid_.values.size(), Rolled{});
   blocks_x_ = (grid_.size_x + kBlockCells - 1) / kBlockCells;
   blocks_y_ = (grid_.size_y + kBlockCells - 1) / kBlockCells;
   block_max_.assign(static_cast<std::size_t>(blocks_x_) * blocks_y_,
@@ -167,10 +167,10 @@ TyreOnGround CheckedGround::tyre(const Eigen::Vector3d& c, const Eigen::Vector3d
   return result;
 }
 
-// Underside of a tyre (a ball) that is let down over a sample.
-float CheckedGround::rolled_height_m(int i, int j) {
-  float& rolled = rolled_[static_cast<std::size_t>(j) * grid_.size_x + i];
-  if (!std::isnan(rolled)) return rolled;
+// Underside of a tyre (a ball) that is let down over a sample, and the sample it touches.
+const CheckedGround::Rolled& CheckedGround::rolled(int i, int j) {
+  Rolled& rolled = rolled_[static_cast<std::size_t>(j) * grid_.size_x + i];
+  if (!std::isnan(rolled.height_m)) return rolled;
   const int reach = static_cast<int>(kTyreRadiusM * cells_per_m_);
   double highest = -std::numeric_limits<double>::infinity();
   for (int v = std::max(0, j - reach); v <= std::min(grid_.size_y - 1, j + reach); ++v) {
@@ -178,14 +178,17 @@ float CheckedGround::rolled_height_m(int i, int j) {
       const double square =
           kTyreRadiusM * kTyreRadiusM - std::pow(std::hypot(u - i, v - j) * grid_.cell_m, 2);
       if (square <= 0.0 || std::isnan(grid_.at(u, v))) continue;
-      highest = std::max(highest, grid_.at(u, v) + std::sqrt(square) - kTyreRadiusM);
+      const double height = grid_.at(u, v) + std::sqrt(square) - kTyreRadiusM;
+      if (height <= highest) continue;
+      highest = height;
+      rolled.touches = {u, v};
     }
   }
-  rolled = static_cast<float>(highest);
+  rolled.height_m = static_cast<float>(highest);
   return rolled;
 }
 
-double CheckedGround::fitted_slope_rad(int i, int j, bool rolled) {
+double CheckedGround::fitted_slope_rad(int i, int j, Surface surface) {
   const int reach = static_cast<int>(kFitRadiusM * cells_per_m_ + 1e-6);
   const double radius_cells = kFitRadiusM * cells_per_m_ + 1e-6;
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
@@ -193,7 +196,7 @@ double CheckedGround::fitted_slope_rad(int i, int j, bool rolled) {
   for (int v = std::max(0, j - reach); v <= std::min(grid_.size_y - 1, j + reach); ++v) {
     for (int u = std::max(0, i - reach); u <= std::min(grid_.size_x - 1, i + reach); ++u) {
       if (std::isnan(grid_.at(u, v)) || std::hypot(u - i, v - j) > radius_cells) continue;
-      const double height = rolled ? rolled_height_m(u, v) : grid_.at(u, v);
+      const double height = surface == Surface::kRolled ? rolled(u, v).height_m : grid_.at(u, v);
       const Eigen::Vector3d row(1.0, (u - i) * grid_.cell_m, (v - j) * grid_.cell_m);
       squares += row * row.transpose();
       sums += row * (height - grid_.at(i, j));
@@ -205,24 +208,29 @@ double CheckedGround::fitted_slope_rad(int i, int j, bool rolled) {
   return std::atan(std::hypot(plane[1], plane[2]));
 }
 
-double CheckedGround::slope_of_cell(int i, int j) {
+double CheckedGround::slope_of_cell(int i, int j, Foot foot) {
   if (i < 0 || j < 0 || i >= grid_.size_x || j >= grid_.size_y) return kUnknown;
-  float& slope = slope_[static_cast<std::size_t>(j) * grid_.size_x + i];
+  float& slope =
+      slope_[static_cast<std::size_t>(foot)][static_cast<std::size_t>(j) * grid_.size_x + i];
   if (slope != kNotFitted) return slope;
   slope = std::numeric_limits<float>::quiet_NaN();
   if (std::isnan(grid_.at(i, j))) return slope;
   // Where the tyre's flanks touch first no wheel stands, however level it is.
-  if (rolled_height_m(i, j) - grid_.at(i, j) > kFlankM) return slope;
-  slope = static_cast<float>(std::min(fitted_slope_rad(i, j, false), fitted_slope_rad(i, j, true)));
+  if (rolled(i, j).height_m - grid_.at(i, j) > kFlankM) return slope;
+  const std::array<int, 2> touched =
+      foot == Foot::kTyre ? rolled(i, j).touches : std::array<int, 2>{i, j};
+  slope = static_cast<float>(std::min(fitted_slope_rad(i, j, Surface::kRolled),
+                                      fitted_slope_rad(touched[0], touched[1], Surface::kRaw)));
   return slope;
 }
 
-double CheckedGround::slope_rad(double x, double y) {
+double CheckedGround::slope_rad(double x, double y, Foot foot) {
   return slope_of_cell(static_cast<int>(std::lround((x - grid_.origin_m.x()) * cells_per_m_)),
-                       static_cast<int>(std::lround((y - grid_.origin_m.y()) * cells_per_m_)));
+                       static_cast<int>(std::lround((y - grid_.origin_m.y()) * cells_per_m_)),
+                       foot);
 }
 
-double CheckedGround::untraversable_distance_m(double x, double y, double max_slope_rad,
+double CheckedGround::untraversable_distance_m(double x, double y, Foot foot, double max_slope_rad,
                                                double reach_m) {
   const double u = (x - grid_.origin_m.x()) * cells_per_m_;
   const double v = (y - grid_.origin_m.y()) * cells_per_m_;
@@ -231,7 +239,7 @@ double CheckedGround::untraversable_distance_m(double x, double y, double max_sl
   for (int j = static_cast<int>(std::floor(v - reach)); j <= v + reach; ++j) {
     for (int i = static_cast<int>(std::floor(u - reach)); i <= u + reach; ++i) {
       const double distance = std::hypot(i - u, j - v);
-      if (distance >= nearest || slope_of_cell(i, j) <= max_slope_rad) continue;
+      if (distance >= nearest || slope_of_cell(i, j, foot) <= max_slope_rad) continue;
       nearest = distance;
     }
   }

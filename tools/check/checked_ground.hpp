@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <limits>
 #include <vector>
 
@@ -47,21 +48,31 @@ class CheckedGround {
   /// At least the highest known sample within `radius_m`; -infinity if there is none.
   [[nodiscard]] double max_height_m(double x, double y, double radius_m) const noexcept;
 
-  /// Slope of the plane through the known samples within 0.3 m of the nearest sample [rad], of the
-  /// ground or of the heights a tyre rolls over it at, whichever is less: on the rim of a pit what
-  /// the tyre touches is level. NaN where that sample is unknown or no plane fits.
-  [[nodiscard]] double slope_rad(double x, double y);
+  /// What stands on the ground: a tyre is a ball that rolls over it, a bucket touches it here.
+  enum class Foot { kTyre, kBucket };
 
-  /// Distance to the nearest sample that is unknown, off the map, steeper than `max_slope_rad`, or
-  /// so far below what a tyre rolls over that the tyre cannot touch it, at most `reach_m`.
-  [[nodiscard]] double untraversable_distance_m(double x, double y, double max_slope_rad,
+  /// Slope of the plane through the samples within 0.3 m of the nearest one, or of the one that a
+  /// tyre over it touches (on a slope that is uphill) [rad]; or of the heights that a tyre's
+  /// underside has over them, whichever is less: on the rim of a pit that is level. NaN where the
+  /// sample is unknown, no plane fits, or a tyre's flanks keep it off by more than 12 cm.
+  [[nodiscard]] double slope_rad(double x, double y, Foot foot);
+
+  /// Distance to the nearest sample where slope_rad is not at most `max_slope_rad`, or that is off
+  /// the map; at most `reach_m`.
+  [[nodiscard]] double untraversable_distance_m(double x, double y, Foot foot, double max_slope_rad,
                                                 double reach_m);
 
  private:
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  [[nodiscard]] double slope_of_cell(int i, int j);
-  [[nodiscard]] double fitted_slope_rad(int i, int j, bool rolled);
-  [[nodiscard]] float rolled_height_m(int i, int j);
+  enum class Surface { kRaw, kRolled };
+  /// A tyre of 0.6 m that is let down over a sample.
+  struct Rolled {
+    float height_m = std::numeric_limits<float>::quiet_NaN();  ///< of its underside
+    std::array<int, 2> touches{};                              ///< sample
+  };
+  [[nodiscard]] double slope_of_cell(int i, int j, Foot foot);
+  [[nodiscard]] double fitted_slope_rad(int i, int j, Surface surface);
+  [[nodiscard]] const Rolled& rolled(int i, int j);
   [[nodiscard]] double lowered_onto_samples(const Eigen::Vector3d& p_world_centre,
                                             const Eigen::Vector3d& axle_world, double radius_m,
                                             double half_width_m) const;
@@ -70,8 +81,8 @@ class CheckedGround {
   double cells_per_m_, last_x_, last_y_;
   int blocks_x_, blocks_y_;
   std::vector<float> block_max_;
-  std::vector<float> slope_;   ///< kNotFitted until asked for
-  std::vector<float> rolled_;  ///< lowest a tyre of 0.6 m can be over a sample; NaN until asked for
+  std::array<std::vector<float>, 2> slope_;  ///< by Foot; kNotFitted until asked for
+  std::vector<Rolled> rolled_;               ///< height NaN until asked for
 };
 
 }  // namespace wex::check

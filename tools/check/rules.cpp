@@ -46,7 +46,7 @@ constexpr std::array<RuleText, kNumRules> kRules{{
     {"bucket off the ground, rows", "m", false, 0.0, {0.02, 0.04, kReported}},
     {"bucket off the ground, between", "m", false, 0.0, {0.05, 0.04, kReported}},
     {"bucket moves while it stands", "m", false, 0.0, {0.05, 0.01, 0.15}},
-    {"lifted wheel near its foothold", "m", true, 0.0, {-0.05, -0.05, kReported}},
+    {"lifted limb near its foothold", "m", true, 0.0, {-0.05, -0.05, kReported}},
     {"swing clearance", "m", true, 0.01, {0.10, 0.10, 0.0}},
     {"chassis above ground", "m", true, 0.01, {0.05, 0.05, 0.0}},
     {"leg or arm above ground", "m", true, 0.0, {0.0, 0.0, 0.0}},

@@ -39,7 +39,7 @@ enum class Rule {
   kBucketHeightAtRows,
   kBucketHeightBetween,
   kBucketDrift,
-  kLiftedWheel,
+  kNearFoothold,
   kSwingClearance,
   kChassisClearance,
   kLimbClearance,

@@ -109,7 +109,7 @@ void MotionBuilder::set_contact(std::size_t limb) {
 bool MotionBuilder::needs_a_node_between(const PreparedRun& run, const Eigen::VectorXd& q_0,
                                          const Eigen::VectorXd& q_1,
                                          const Eigen::VectorXd& q_middle) const {
-  if ((q_1 - q_0).head<2>().norm() > parts_.motion.max_node_step_m + 1e-6) return true;
+  if ((q_1 - q_0).head<3>().norm() > parts_.motion.max_node_step_m + 1e-6) return true;
   const Eigen::VectorXd step = (q_1 - q_0).tail(parts_.machine.num_joints());
   if (step.cwiseAbs().maxCoeff() > kLimbStep + kRounding) return true;
   const Eigen::VectorXd middle = 0.5 * (q_0 + q_1);

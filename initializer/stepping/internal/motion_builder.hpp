@@ -19,6 +19,7 @@ namespace wex {
 
 /// What a motion is made with; built once per terrain and machine.
 struct MotionParts {
+  const TerrainMap& terrain;
   const MachineModel& machine;
   PlanSettings settings;
   SteppingMotionSettings motion;

@@ -2,13 +2,15 @@
 // the arm is held.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "initializer/stepping/internal/motion_builder.hpp"
 
 namespace wex {
 namespace {
 
-constexpr double kTableErrorM = 1e-4;  // added to demands: tables err by less
+constexpr double kTableErrorM = 1e-4;    // added to demands: tables err by less
+constexpr double kSwingReserveM = 0.01;  // of the tyres, for what is between the poses looked at
 constexpr double kBeamClearanceM = 0.05;
 constexpr double kLiftStepRad = 0.05;
 
@@ -115,7 +117,9 @@ MotionBuilder::Done MotionBuilder::prepare_support(PreparedRun& run) {
     run.held = {{0, parts_.arm.transport()}};
     return {};
   }
-  if (auto lifts = lift_wheels(run.base, parts_.placer, parts_.motion.swing_clearance_m); !lifts) {
+  if (auto lifts =
+          lift_wheels(run.base, parts_.placer, parts_.motion.swing_clearance_m + kSwingReserveM);
+      !lifts) {
     return lifts;
   }
   if (auto raised = raise_legs_clear(run.base); !raised) return raised;
@@ -128,6 +132,7 @@ MotionBuilder::Done MotionBuilder::prepare_support(PreparedRun& run) {
                    parts_.arm.transport());
   }
   const bool bucket = run.base.support.bucket >= 0;
+  std::string no_access;
   // At both ends the bucket comes down and goes up again, on four wheels.
   const PostureJudge accessible = [&](std::size_t knot, const ArmPosture& standing) {
     const Footing& on_wheels = *stance[knot].on_wheels;
@@ -135,8 +140,13 @@ MotionBuilder::Done MotionBuilder::prepare_support(PreparedRun& run) {
     const Eigen::VectorXd q_wheels =
         posture(point, *placed(point, 0, run.base.lifted_hfe_rad), parts_.arm.transport());
     const auto lowering = mover_.lowering(on_wheels, q_wheels, standing);
-    return lowering.has_value() &&
-           mover_.path(on_wheels, q_wheels, parts_.arm.transport(), lowering->front()).has_value();
+    if (!lowering) {
+      no_access = lowering.error();
+      return false;
+    }
+    const auto path = mover_.path(on_wheels, q_wheels, parts_.arm.transport(), lowering->front());
+    if (!path) no_access = path.error();
+    return path.has_value();
   };
   const PostureJudge clear = [&](std::size_t knot, const ArmPosture& posture) {
     return mover_.fault(stance[knot].footing, q[knot], posture, bucket) == nullptr;
@@ -149,7 +159,11 @@ MotionBuilder::Done MotionBuilder::prepare_support(PreparedRun& run) {
         bucket_path(parts_.arm, parts_.placer.ground(), run.base, stance,
                     sequence_.bucket_points[static_cast<std::size_t>(run.base.support.bucket)],
                     settings, {clear, accessible});
-    if (!path) return tl::unexpected<MotionFailure>(path.error());
+    if (!path) {
+      MotionFailure failure = path.error();
+      if (!no_access.empty()) failure.why += "; before that, " + no_access;
+      return tl::unexpected<MotionFailure>(std::move(failure));
+    }
     run.bucket = *std::move(path);
     return {};
   }
