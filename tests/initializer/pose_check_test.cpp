@@ -149,6 +149,8 @@ TEST(PoseCheck, MirroredGroundGivesMirroredFeasibility) {
   const PoseCheck check_mirrored = make_check(mirrored, settings);
   int num_ok = 0;
   for (const Pose2& pose : random_poses(1000, 18.0, 13.0)) {
+    // Of two nearest traversable cells at the same distance only one is a candidate.
+    if (!map.traversable_at({pose.x_m, pose.y_m})) continue;
     const StandingPose left = check.stand(pose, PoseCheck::Steering{});
     const StandingPose right =
         check_mirrored.stand({pose.x_m, -pose.y_m, -pose.yaw_rad}, PoseCheck::Steering{});

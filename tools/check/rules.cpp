@@ -40,7 +40,7 @@ constexpr std::array<RuleText, kNumRules> kRules{{
     {"wheel above ground, between", "m", false, 0.0, {0.05, 0.04, 0.04}},
     {"wheel in the ground, between", "m", true, 0.0, {-0.05, -0.03, -0.03}},
     {"wheel touches down from", "m", false, 0.0, {0.05, 0.05, kReported}},
-    {"standing wheel slides", "m/s", false, 0.0, {0.30, 0.10, kReported}},
+    {"standing wheel slides", "m/s", false, 0.0, {0.40, 0.10, kReported}},
     {"side slip / travel", "%", false, 0.0, {kReported, 2.0, 5.0}},
     {"wheel turn off travel", "%", false, 0.0, {kReported, 2.0, kReported}},
     {"bucket off the ground, rows", "m", false, 0.0, {0.02, 0.04, kReported}},

@@ -196,7 +196,7 @@ TEST(CheckFiles, AModelThatIsNoneIsRefusedWithItsName) {
   files.write("model.xml", "<mujoco><worldbody/>");
   EXPECT_THAT(files.refusal(), HasSubstr("model.xml"));
   PlanFiles other(test::driving());
-  other.spoil("model.xml", "\"LF_wheel\"", "\"LF_hoof\"");
+  other.spoil("model.xml", "site name=\"LF_wheel\"", "site name=\"LF_hoof\"");
   EXPECT_THAT(other.refusal(), AllOf(HasSubstr("model.xml"), HasSubstr("LF_wheel")));
 }
 

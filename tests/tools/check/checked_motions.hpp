@@ -101,6 +101,13 @@ class Standstill {
     q[coordinate(joint)] = value;
     return to(q);
   }
+  /// The arm of `q` without touching the wheels: slewed folded, stretched while high, then lowered.
+  Standstill& arm_to(const Eigen::VectorXd& q) {
+    to("TURN", q[coordinate("TURN")]).to("BOOM", 1.25);
+    for (const char* joint : {"DIPPER", "TELE", "EE_PITCH", "BOOM"})
+      to(joint, q[coordinate(joint)]);
+    return *this;
+  }
   /// The same posture a second later with another schedule.
   Standstill& contact(Limb limb, bool on) {
     WholeBodyNode node = plan_.nodes.back();

@@ -77,7 +77,7 @@ TEST(PlanChecker, AcceptsALiftedWheelWithTheArmAsCounterweight) {
   const double down = standing()[coordinate("RF_HFE")];
   const auto lift = [&](const Eigen::VectorXd& arm) {
     return Standstill()
-        .to(arm)
+        .arm_to(arm)
         .contact(Limb::kRF, false)
         .to("RF_HFE", 0.1)
         .to("RF_HFE", down)
@@ -200,7 +200,7 @@ TEST(PlanChecker, FindsASwingWheelTooLowOverTheGround) {
     balanced[coordinate("TURN")] = 225.0 * test::kDegree;
     const double down = standing()[coordinate("LF_HFE")];
     Standstill lift;
-    Plan plan = lift.to(balanced).contact(Limb::kLF, false).to("LF_HFE", hfe_rad).plan();
+    Plan plan = lift.arm_to(balanced).contact(Limb::kLF, false).to("LF_HFE", hfe_rad).plan();
     for (int i = 0; i < 20; ++i) {
       WholeBodyNode node = plan.nodes.back();
       node.t_s += 0.4;
