@@ -107,7 +107,7 @@ Result<int> run_check(const CheckOptions& options, std::ostream& out) {
     }
   }
   out << check_table(*report, options.all);
-  if (!report->accepted) out << "first: " << report->verdict() << "\n";
+  if (!report->accepted) out << report->verdict() << "\n";
   return report->accepted ? 0 : kViolations;
 }
 
