@@ -94,7 +94,7 @@ const char* ArmMover::find_fault(const Footing& footing, Eigen::VectorXd& q,
     }
   }
   if (!collision_.clear(workspace_, CollisionModel::Part::kArm, motion_.self_collision_m) ||
-      !collision_.clear(workspace_, CollisionModel::Part::kCabin, motion_.cabin_clearance_m)) {
+      !collision_.clear(workspace_, CollisionModel::Part::kCabin, -motion_.cabin_overlap_m)) {
     return kTooClose;
   }
   return nullptr;
@@ -282,7 +282,7 @@ std::string ArmMover::why() {
   const auto arm = collision_.nearest(workspace_, CollisionModel::Part::kArm);
   const auto cabin = collision_.nearest(workspace_, CollisionModel::Part::kCabin);
   const bool cabin_decides =
-      cabin.distance_m - motion_.cabin_clearance_m < arm.distance_m - motion_.self_collision_m;
+      cabin.distance_m + motion_.cabin_overlap_m < arm.distance_m - motion_.self_collision_m;
   const CollisionModel::Pair& pair =
       collision_.pairs()[static_cast<std::size_t>(cabin_decides ? cabin.pair : arm.pair)];
   const auto name = [&](int capsule) {

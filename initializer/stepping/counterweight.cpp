@@ -1,8 +1,31 @@
 #include "initializer/stepping/counterweight.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
 
 namespace wex {
+
+std::vector<ArmPosture> counterweight_postures(const ArmKinematics& arm) {
+  // Boom, dipper, telescope and pitch as shares of their ranges, from far out to near.
+  constexpr std::array<std::array<double, 4>, 3> kShares{
+      {{0.72, 0.62, 0.57, 0.50}, {0.87, 0.66, 0.30, 0.37}, {0.72, 0.38, 0.30, 0.27}}};
+  constexpr int kNumYaws = 24;
+  std::vector<ArmPosture> postures;
+  for (int yaw = 0; yaw < kNumYaws; ++yaw) {
+    ArmKinematics::Joints joints = ArmKinematics::joints_of(arm.transport());
+    joints[0] = wrap_angle(2.0 * std::numbers::pi * yaw / kNumYaws);
+    postures.push_back(ArmKinematics::posture_of(joints));
+    for (const auto& shares : kShares) {
+      for (std::size_t k = 1; k < joints.size(); ++k) {
+        joints[k] = std::lerp(arm.lower()[k], arm.upper()[k], shares[k - 1]);
+      }
+      postures.push_back(ArmKinematics::posture_of(joints));
+    }
+  }
+  return postures;
+}
 
 Result<std::vector<HeldPosture>, MotionFailure> counterweights(
     const ArmKinematics& arm, const BaseRun& run, const std::vector<BucketStance>& stances,

@@ -14,6 +14,9 @@ struct HeldPosture {
   ArmPosture posture;
 };
 
+/// Postures over all cabin yaws and some reaches, all of them above the machine and level ground.
+[[nodiscard]] std::vector<ArmPosture> counterweight_postures(const ArmKinematics& arm);
+
 /// As few postures as possible that keep a run stable, the arm in the air as a counterweight: each
 /// of the candidates is held as far as it lasts. Where postures change, both hold.
 ///   stances  one per knot of the run

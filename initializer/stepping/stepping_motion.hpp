@@ -17,9 +17,11 @@ struct MotionFailure {
 
 /// How limbs move when they are not simply driving.
 struct SteppingMotionSettings {
-  double swing_clearance_m = 0.10;      ///< lifted tyres and links above the ground
-  double self_collision_m = 0.10;       ///< between limbs, and limb and chassis
-  double cabin_clearance_m = 0.02;      ///< of the cabin from wheels; its capsules are wide
+  double swing_clearance_m = 0.10;  ///< lifted tyres and links above the ground
+  double self_collision_m = 0.10;   ///< between limbs, and limb and chassis
+  /// Between capsules of cabin and wheels, which together are at least 0.12 m wider than what they
+  /// cover; hind wheels pass that close when the base is low.
+  double cabin_overlap_m = 0.05;
   double max_node_step_m = 0.2;         ///< of the base; limbs move at most 0.1 m (0.1 rad) a node
   double bucket_approach_m = 0.3;       ///< the bucket comes down this far vertically ...
   double bucket_lowering_m_s = 0.05;    ///< ... at this speed, and stands still for a moment

@@ -52,9 +52,13 @@ TEST(SteppingTiming, OneJointTakesItsRateAndAcceleration) {
 
 TEST(SteppingTiming, ThePumpIsShared) {
   const double angle_rad = 0.8;
-  const auto together = move({{"BOOM", -angle_rad}, {"DIPPER", angle_rad}}, 16);
-  const double flow_m3 = angle_rad * (joint("BOOM").max_effort + joint("DIPPER").max_effort) /
-                         test_machine().pump_pressure_pa;
+  const auto together = move(
+      {{"BOOM", -angle_rad}, {"DIPPER", angle_rad}, {"TELE", angle_rad}, {"EE_PITCH", angle_rad}},
+      16);
+  double flow_m3 = 0.0;
+  for (const char* name : {"BOOM", "DIPPER", "TELE", "EE_PITCH"}) {
+    flow_m3 += angle_rad * joint(name).max_effort / test_machine().pump_pressure_pa;
+  }
   EXPECT_NEAR(shortest_duration_s(test_machine(), together.front().q, together.back().q, kShare),
               flow_m3 / test_machine().pump_flow_limit_w_over_pa, 1e-9);
   const double alone_s =

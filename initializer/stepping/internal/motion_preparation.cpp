@@ -172,6 +172,10 @@ MotionBuilder::Done MotionBuilder::prepare_support(PreparedRun& run) {
     candidates.push_back(sequence_.states[knot.state].arm);
   }
   auto held = counterweights(parts_.arm, run.base, stance, candidates, margin_m, clear);
+  if (!held) {  // the certificate does not know all that the arm can run into
+    candidates = counterweight_postures(parts_.arm);
+    held = counterweights(parts_.arm, run.base, stance, candidates, margin_m, clear);
+  }
   if (!held) return tl::unexpected<MotionFailure>(held.error());
   run.held = *std::move(held);
   return {};
