@@ -108,7 +108,7 @@ std::vector<double> smoothed(const std::vector<Station>& stations,
 
 // Stations at the usual spacing, and at a quarter of it in the fine part.
 std::vector<Station> stations_of(const DrivePath& path, double spacing_m,
-                                 const PathGrid::FinePart& fine) {
+                                 const FinePart& fine) {
   constexpr double kFineShare = 0.25, kSamePlaceM = 1e-6;
   const std::vector<Station> coarse = path_stations(path, spacing_m);
   if (fine.to_m < fine.from_m) return coarse;

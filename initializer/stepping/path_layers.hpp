@@ -41,6 +41,11 @@ struct PathLayer {
   }
 };
 
+/// Distances driven between which stations lie closer together; none if they end before they begin.
+struct FinePart {
+  double from_m = 0.0, to_m = -1.0;
+};
+
 /// The graph's grid along one path.
 struct PathGrid {
   double z_m = 0.0, z_step_m = 0.1;  ///< height of cell 0
@@ -49,10 +54,6 @@ struct PathGrid {
   std::vector<PathLayer> layers;
   std::vector<Eigen::Vector3d> bucket_points;
 
-  /// Distances driven between which stations lie closer together.
-  struct FinePart {
-    double from_m = 0.0, to_m = -1.0;
-  };
   [[nodiscard]] static PathGrid of(const StanceCheck& check, const DrivePath& path,
                                    const PlanSettings& plan, const CertificateSettings& settings,
                                    const std::optional<BaseCoordinates>& begin,

@@ -134,7 +134,7 @@ TEST(Certificate, ClimbsABlockRaisingTheBase) {
     const auto sequence = world.certifier.certify(straight_to(7.5));
     ASSERT_TRUE(sequence) << height_m << ": " << sequence.error().why;
     expect_sound(world, *sequence);
-    EXPECT_GT(sequence->states.back().base[kBaseZ], height_m + 0.6);
+    EXPECT_GT(sequence->states.back().base[kBaseZ], height_m + 0.4);
     EXPECT_THAT(lifted_in_turn(*sequence), testing::Contains(kFrontPair));
   }
 }
