@@ -66,11 +66,11 @@ CertifiedSequence Certifier::Impl::sequence_of(const DrivePath& path, PathGrid g
   for (const GraphState& from : answer.states) {
     const PathLayer& layer = grid.layers[from.layer];
     SteppingState state;
-    state.station = layer.station;
+    state.station = from.layer;
     state.base = grid.base(layer, from.z, from.pitch);
     state.support = {kSupportClasses[from.support_class].lifted, from.bucket};
     const BaseFrame base = BaseFrame::from(state.base);
-    const Stance stance = check.stance(base, layer.steered, plain);
+    const Stance stance = check.stance(base, check.steering(layer.curvature_1_m), plain);
     if (from.bucket >= 0) {
       const Eigen::Vector3d& point = grid.bucket_points[static_cast<std::size_t>(from.bucket)];
       const auto on_bucket =
@@ -89,11 +89,7 @@ CertifiedSequence Certifier::Impl::sequence_of(const DrivePath& path, PathGrid g
       state.margin_m = check.margin_on_wheels(base, stance);
     }
     sequence.min_margin_m = std::min(sequence.min_margin_m, state.margin_m);
-    // Two layers at one station differ in steering only.
-    const bool same = !sequence.states.empty() && sequence.states.back().station == state.station &&
-                      sequence.states.back().support == state.support &&
-                      sequence.states.back().base == state.base;
-    if (!same) sequence.states.push_back(state);
+    sequence.states.push_back(state);
   }
   const std::size_t num_stations = sequence.states.back().station + 1;
   if (num_stations < grid.stations.size()) {
@@ -124,11 +120,11 @@ Result<CertifiedSequence, CertificateFailure> Certifier::Impl::certify(
   LayeredGraph::Answer answer = graph.search(!begin.has_value(), or_furthest);
   if (answer.states.empty() || answer.hopeless) {
     const PathLayer& layer = grid.layers[answer.furthest_layer];
-    CertificateFailure failure{layer.station, layer.pose,
+    CertificateFailure failure{answer.furthest_layer, layer.pose,
                                graph.why_not_beyond(answer.furthest_layer)};
     if (answer.hopeless && !or_furthest) {
       // The place to stand astride may lie between two stations.
-      const double s_m = grid.stations[layer.station].s_m;
+      const double s_m = grid.stations[answer.furthest_layer].s_m;
       PathGrid fine =
           PathGrid::of(check, path, plan, settings, begin, {s_m - kFineReachM, s_m + kFineReachM});
       LayeredGraph closer(check, fine, plan, settings);

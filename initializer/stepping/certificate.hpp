@@ -60,8 +60,9 @@ struct CertificateFailure {
 /// Costs and grid of the layered graph; the values measured for this machine.
 struct CertificateSettings {
   double height_step_m = 0.1;
-  double pitch_step_rad = 0.08726646259971647;        ///< 5 degrees
-  double max_pitch_offset_rad = 0.2617993877991494;  ///< 15 degrees about level and the ground's own
+  double pitch_step_rad = 0.08726646259971647;  ///< 5 degrees
+  double max_pitch_offset_rad =
+      0.2617993877991494;  ///< 15 degrees about level and the ground's own
   double bucket_spacing_m = 0.4;
   double min_bucket_distance_m = 3.3;
   double lift_cost_m = 3.0, bucket_cost_m = 6.0;  ///< per change of support, in metres of driving

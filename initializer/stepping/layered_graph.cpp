@@ -111,8 +111,8 @@ const Stance& LayeredGraph::stance_of(std::int32_t index) {
   Record& record = records_[static_cast<std::size_t>(index)];
   if (!record.judged) {
     const PathLayer& layer = grid_->layers[static_cast<std::size_t>(record.layer)];
-    record.stance =
-        check_->stance(frame_of(record), layer.steered, demand_at(record.layer).clearances);
+    record.stance = check_->stance(frame_of(record), check_->steering(layer.curvature_1_m),
+                                   demand_at(record.layer).clearances);
     record.judged = true;
     ++num_stances_;
   }
@@ -198,7 +198,6 @@ void LayeredGraph::expand(std::int32_t index) {
   const double share = support == 0 ? 1.0 : 1.0 + settings_.stepping_share;
   for (std::size_t next = k; next <= std::min(k + 1, last_layer_); ++next) {
     const double step_m = next > k ? grid_->layers[next].step_m : 0.0;
-    const bool steering_only = next > k && step_m <= 0.0;
     double along = step_m * (share + off_nominal_cost(grid_->layers[k], record.z, record.pitch));
     if (bucket >= 0) {
       const Eigen::Vector2d at = bucket_in_heading(
@@ -206,9 +205,8 @@ void LayeredGraph::expand(std::int32_t index) {
       along += step_m * kNearBucketCost *
                std::max(0.0, settings_.min_bucket_distance_m - std::abs(at.x()));
     }
-    const int reach = steering_only ? 0 : 1;
-    for (int dz = -reach; dz <= reach; ++dz) {
-      for (int dp = -reach; dp <= reach; ++dp) {
+    for (int dz = -1; dz <= 1; ++dz) {
+      for (int dp = -1; dp <= 1; ++dp) {
         if (next == k && dz == 0 && dp == 0) continue;
         const std::int32_t to = record_at(next, record.z + dz, record.pitch + dp);
         if (to < 0) continue;
@@ -297,7 +295,6 @@ bool LayeredGraph::edge_is_good(const Node& from, const Node& to) const {
   const Record& b = records_[static_cast<std::size_t>(to.record)];
   const PathLayer& layer_a = grid_->layers[static_cast<std::size_t>(a.layer)];
   const PathLayer& layer_b = grid_->layers[static_cast<std::size_t>(b.layer)];
-  if (a.layer != b.layer && layer_b.step_m <= 0.0) return true;
   const BaseCoordinates base_a = grid_->base(layer_a, a.z, a.pitch);
   BaseCoordinates change = grid_->base(layer_b, b.z, b.pitch) - base_a;
   change[kBaseYaw] = wrap_angle(change[kBaseYaw]);
@@ -305,7 +302,8 @@ bool LayeredGraph::edge_is_good(const Node& from, const Node& to) const {
   for (int k = 1; k <= kSubPoses; ++k) {
     const double share = static_cast<double>(k) / (kSubPoses + 1);
     const BaseFrame base = BaseFrame::from(base_a + share * change);
-    const Stance stance = check_->stance(base, layer_b.steered, plain_.clearances);
+    const double curvature_1_m = std::lerp(layer_a.curvature_1_m, layer_b.curvature_1_m, share);
+    const Stance stance = check_->stance(base, check_->steering(curvature_1_m), plain_.clearances);
     if (!stance.allows(support.lifted) ||
         margin_m(base, stance, support, bucket_of(from), plain_.margin_m) < plain_.margin_m) {
       return false;

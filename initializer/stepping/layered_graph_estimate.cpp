@@ -54,10 +54,9 @@ void LayeredGraph::estimate_layer(std::size_t k) {
         continue;
       }
       const PathLayer& next = grid_->layers[k + 1];
-      const int reach = next.step_m > 0.0 ? 1 : 0;
       const double off = off_nominal_cost(layer, layer.first_z + i, layer.first_pitch + j);
-      for (int dz = -reach; dz <= reach; ++dz) {
-        for (int dp = -reach; dp <= reach; ++dp) {
+      for (int dz = -1; dz <= 1; ++dz) {
+        for (int dp = -1; dp <= 1; ++dp) {
           const int z = layer.first_z + i + dz - next.first_z;
           const int p = layer.first_pitch + j + dp - next.first_pitch;
           if (z < 0 || p < 0 || z >= next.num_z || p >= next.num_pitch) continue;

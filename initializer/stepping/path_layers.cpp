@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "initializer/stepping/stepping_motion.hpp"
+
 namespace wex {
 namespace {
 
@@ -29,24 +31,7 @@ double heading_y(const Pose2& pose, double forward, double left) {
 
 const Eigen::Vector3d& nominal_wheel(const StanceTables& tables, std::size_t leg) {
   constexpr std::size_t kMiddle = LegSweep::kSamples / 2;
-  return tables.legs[leg][static_cast<std::size_t>(Steered::kStraight)]
-      .samples[kMiddle]
-      .p_base_wheel;
-}
-
-// Curvature of the piece between a station and the next.
-std::vector<Steered> steered_after(const DrivePath& path, const std::vector<Station>& stations,
-                                   double min_turning_radius_m) {
-  std::vector<Steered> steered;
-  std::size_t piece = 0;
-  double end_m = path.empty() ? 0.0 : std::abs(path.front().length_m);
-  for (std::size_t k = 0; k + 1 < stations.size(); ++k) {
-    const double middle_m = 0.5 * (stations[k].s_m + stations[k + 1].s_m);
-    while (piece + 1 < path.size() && middle_m > end_m) end_m += std::abs(path[++piece].length_m);
-    steered.push_back(steered_for(path[piece].curvature_1_m, min_turning_radius_m));
-  }
-  if (steered.empty()) steered.push_back(Steered::kStraight);
-  return steered;
+  return tables.legs[leg][kSteeredStraight].samples[kMiddle].p_base_wheel;
 }
 
 class BucketPoints {
@@ -107,8 +92,7 @@ std::vector<double> smoothed(const std::vector<Station>& stations,
 }
 
 // Stations at the usual spacing, and at a quarter of it in the fine part.
-std::vector<Station> stations_of(const DrivePath& path, double spacing_m,
-                                 const FinePart& fine) {
+std::vector<Station> stations_of(const DrivePath& path, double spacing_m, const FinePart& fine) {
   constexpr double kFineShare = 0.25, kSamePlaceM = 1e-6;
   const std::vector<Station> coarse = path_stations(path, spacing_m);
   if (fine.to_m < fine.from_m) return coarse;
@@ -246,16 +230,15 @@ PathGrid PathGrid::of(const StanceCheck& check, const DrivePath& path, const Pla
           : places_for_bucket(check, grid.stations, settings.bucket_spacing_m,
                               plan.min_signed_distance_m + 2.0 * settings.inflation_m);
 
-  const std::vector<Steered> after =
-      steered_after(path, grid.stations, check.tables().min_turning_radius_m);
+  const std::vector<double> curvature =
+      steered_curvature_1_m(path, grid.stations, SteppingMotionSettings{}.steering_window_m);
   const double tilt_rad = plan.max_tilt_rad + 1e-9;
   const double reach_m = check.tables().arm.empty() ? 0.0 : check.tables().arm.max_reach_m() + 0.5;
   std::size_t num_poses = 0;
   for (std::size_t k = 0; k < n; ++k) {
     PathLayer layer;
-    layer.station = k;
     layer.pose = grid.stations[k].pose;
-    layer.steered = after[std::min(k > 0 ? k - 1 : 0, after.size() - 1)];
+    layer.curvature_1_m = curvature[k];
     layer.step_m = k > 0 ? grid.stations[k].s_m - grid.stations[k - 1].s_m : 0.0;
     layer.roll_rad = roll[k];
     const auto z_cell = [&](double z) {
@@ -288,15 +271,6 @@ PathGrid PathGrid::of(const StanceCheck& check, const DrivePath& path, const Pla
     layer.first_pose = num_poses;
     num_poses += layer.num_poses();
     grid.layers.push_back(layer);
-    // Steering while standing: the wheels move sideways, so both steerings must stand.
-    const bool switches = k > 0 && k + 1 < n && after[k] != after[k - 1];
-    if (switches) {
-      layer.steered = after[k];
-      layer.step_m = 0.0;
-      layer.first_pose = num_poses;
-      num_poses += layer.num_poses();
-      grid.layers.push_back(layer);
-    }
   }
   return grid;
 }

@@ -22,13 +22,11 @@ struct GroundUnder {
 };
 [[nodiscard]] GroundUnder ground_under(const StanceCheck& check, const Pose2& pose) noexcept;
 
-/// One layer of the graph: a station of the path with one steering. Where the curvature switches
-/// there are two layers at one station.
+/// One layer of the graph: a station of the path.
 struct PathLayer {
-  std::size_t station = 0;
   Pose2 pose;
-  Steered steered = Steered::kStraight;
-  double step_m = 0.0;  ///< from the layer before
+  double curvature_1_m = 0.0;  ///< steered, averaged along the path as the motion will be
+  double step_m = 0.0;         ///< from the layer before
   double roll_rad = 0.0;
   int nominal_z = 0, nominal_pitch = 0;  ///< grid cells that follow the ground
   int first_z = 0, num_z = 0, first_pitch = 0, num_pitch = 0;

@@ -166,14 +166,14 @@ LegFault StanceCheck::lower_leg(const BaseFrame& base, const LegSweep& sweep, in
   return LegFault::kTooLow;
 }
 
-Stance StanceCheck::stance(const BaseFrame& base, Steered steered,
+Stance StanceCheck::stance(const BaseFrame& base, int steering,
                            const StanceClearances& clearances) const noexcept {
   Stance stance;
   stance.belly_clear = belly_clear(base, clearances.belly_m);
   if (!stance.belly_clear) return stance;
   for (int leg = 0; leg < kNumWheels; ++leg) {
     const auto i = static_cast<std::size_t>(leg);
-    const LegSweep& sweep = tables_->legs[i][static_cast<std::size_t>(steered)];
+    const LegSweep& sweep = tables_->legs[i][static_cast<std::size_t>(steering)];
     stance.fault[i] = lower_leg(base, sweep, leg, clearances.edge_m, stance);
     if (stance.fault[i] == LegFault::kNone) stance.grounded |= static_cast<std::uint8_t>(1U << i);
 

@@ -67,7 +67,7 @@ class StanceCheck {
   /// Every leg is lowered from its highest position until its wheel meets the ground, so that
   /// lifting it off and putting it down there is clear by construction. The wheel is a disc as in
   /// wheel_rest.
-  [[nodiscard]] Stance stance(const BaseFrame& base, Steered steered,
+  [[nodiscard]] Stance stance(const BaseFrame& base, int steering,
                               const StanceClearances& clearances) const noexcept;
 
   /// Smallest margin on four wheels over all cabin yaws, arm folded [m].
@@ -98,6 +98,9 @@ class StanceCheck {
   /// May the bucket be put down here, its edge along `yaw`'s lateral axis?
   [[nodiscard]] bool bucket_spot(double x, double y, double yaw_rad, double edge_m) const noexcept;
 
+  [[nodiscard]] int steering(double curvature_1_m) const noexcept {
+    return steering_for(curvature_1_m, tables_->min_turning_radius_m);
+  }
   [[nodiscard]] const StanceGround& ground() const noexcept { return *ground_; }
   [[nodiscard]] const StanceTables& tables() const noexcept { return *tables_; }
 

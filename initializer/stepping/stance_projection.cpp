@@ -55,7 +55,7 @@ Certifier::Admission project_stance(const StanceCheck& check, const PlanSettings
   if (!under.any || std::abs(under.roll_rad) > plan.max_tilt_rad) {
     return Certifier::Admission::kRefused;
   }
-  const Steered steered = steered_for(curvature_1_m, check.tables().min_turning_radius_m);
+  const int steering = check.steering(curvature_1_m);
   const StanceClearances plain{plan.min_signed_distance_m, StanceClearances{}.swing_m,
                                plan.belly_clearance_m};
   const double nominal_m =
@@ -84,7 +84,7 @@ Certifier::Admission project_stance(const StanceCheck& check, const PlanSettings
       BaseCoordinates coordinates;
       coordinates << pose.x_m, pose.y_m, z, pose.yaw_rad, pitch, under.roll_rad;
       const BaseFrame base = BaseFrame::from(coordinates);
-      const Stance stance = check.stance(base, steered, plain);
+      const Stance stance = check.stance(base, steering, plain);
       if (stance.allows(0) && check.margin_on_wheels(base, stance) >= plan.min_stability_margin_m) {
         return Certifier::Admission::kOnFourWheels;
       }

@@ -1,5 +1,6 @@
 #include "initializer/stepping/stance_tables.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -22,9 +23,9 @@ std::vector<int> chain_to(const KinematicTree& tree, int body) {
 
 }  // namespace
 
-Steered steered_for(double curvature_1_m, double min_turning_radius_m) noexcept {
-  const double share = curvature_1_m * min_turning_radius_m;
-  return share > 0.5 ? Steered::kLeft : (share < -0.5 ? Steered::kRight : Steered::kStraight);
+int steering_for(double curvature_1_m, double min_turning_radius_m) noexcept {
+  const double share = std::clamp(curvature_1_m * min_turning_radius_m, -1.0, 1.0);
+  return kSteeredStraight + static_cast<int>(std::lround(share * kSteeredStraight));
 }
 
 Result<StanceTables> StanceTables::build(const MachineModel& machine) {
@@ -55,8 +56,9 @@ Result<StanceTables> StanceTables::build(const MachineModel& machine) {
     tables.half_width_m[i] = leg.half_width_m;
     tables.sag_m[i] = leg.static_sag_m;
   }
-  for (std::size_t k = 0; k < kNumSteered; ++k) {
-    const double curvature_1_m = (static_cast<double>(k) - 1.0) / machine.min_turning_radius_m;
+  for (std::size_t k = 0; k < kNumSteerings; ++k) {
+    const double curvature_1_m =
+        (static_cast<double>(k) / kSteeredStraight - 1.0) / machine.min_turning_radius_m;
     for (std::size_t n = 0; n < LegSweep::kSamples; ++n) {
       const double share = static_cast<double>(n) / (LegSweep::kSamples - 1);
       std::array<double, kNumWheels> hfe{};
@@ -94,7 +96,7 @@ Result<StanceTables> StanceTables::build(const MachineModel& machine) {
   tables.moment_chassis_base = tables.mass_kg * tree.com(w);
   for (std::size_t i = 0; i < kNumWheels; ++i) {
     tables.moment_chassis_base -=
-        tables.legs[i][kNumSteered - 1].samples[LegSweep::kSamples - 1].moment_base;
+        tables.legs[i][kNumSteerings - 1].samples[LegSweep::kSamples - 1].moment_base;
   }
   if (!machine.arm) {
     tables.moment_folded_base.emplace_back(Eigen::Vector3d::Zero());

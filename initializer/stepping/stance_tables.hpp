@@ -10,12 +10,13 @@
 
 namespace wex {
 
-/// Steering of all wheels, straight or for the tightest arc: the kingpin offset moves the wheels by
-/// up to a quarter of a metre between them.
-enum class Steered { kRight = 0, kStraight = 1, kLeft = 2 };
-inline constexpr std::size_t kNumSteered = 3;
-/// The nearest of the three for a curvature of the base's path.
-[[nodiscard]] Steered steered_for(double curvature_1_m, double min_turning_radius_m) noexcept;
+/// Steering of all wheels by the curvature of the base's path, from the tightest arc to the right
+/// to that to the left: the kingpin offset moves the wheels by up to a quarter of a metre between
+/// straight and tightest, so by 3 cm from one to the next.
+inline constexpr int kNumSteerings = 17;
+inline constexpr int kSteeredStraight = kNumSteerings / 2;
+/// The nearest of them.
+[[nodiscard]] int steering_for(double curvature_1_m, double min_turning_radius_m) noexcept;
 
 /// One leg at one hip flexion, base frame.
 struct LegSample {
@@ -39,7 +40,7 @@ struct LegSweep {
 /// arm at all cabin yaws, counterweight postures, bucket contacts. Everything else is in transport
 /// posture. Plain data, made from the machine's kinematic tree.
 struct StanceTables {
-  std::array<std::array<LegSweep, kNumSteered>, kNumWheels> legs;  ///< indexed by Limb, Steered
+  std::array<std::array<LegSweep, kNumSteerings>, kNumWheels> legs;  ///< by Limb and steering
   std::array<double, kNumWheels> radius_m{}, half_width_m{}, sag_m{};
   double mass_kg = 0.0;
   Eigen::Vector3d moment_chassis_base;                 ///< all but legs, cabin and arm [kg m]

@@ -33,16 +33,21 @@ Result<std::vector<WholeBodyNode>, MotionFailure> SteppingMotion::nodes(
     const CertifiedSequence& sequence) const {
   WEX_EXPECTS(!sequence.states.empty() && sequence.states.front().support == Support{} &&
               sequence.states.back().support == Support{});
-  MotionBuilder builder(impl_->parts, sequence);
-  auto built = builder.build();
+  // Steering is smoothed as far as the wheels find ground: turned less or more they stand
+  // elsewhere.
+  Result<std::vector<MotionNode>, MotionFailure> built = std::vector<MotionNode>();
+  for (const double share : {1.0, 0.5, 0.2}) {
+    MotionBuilder builder(impl_->parts, sequence, share * impl_->parts.motion.steering_window_m);
+    built = builder.build();
+    if (built || !builder.missed_ground()) break;
+  }
   if (!built) return tl::unexpected<MotionFailure>(built.error());
   std::vector<MotionNode>& nodes = *built;
   const MachineModel& machine = impl_->parts.machine;
   turn_wheels(machine, nodes);
   constexpr double kRoundingM = 2e-3;  // margins were judged before nodes were put between knots
-  if (const auto fault =
-          find_fault(impl_->parts.terrain, machine, nodes,
-                     impl_->parts.settings.min_stability_margin_m - kRoundingM)) {
+  if (const auto fault = find_fault(impl_->parts.terrain, machine, nodes,
+                                    impl_->parts.settings.min_stability_margin_m - kRoundingM)) {
     return tl::unexpected<MotionFailure>({nodes[fault->node].state, fault->why});
   }
   const std::vector<double> t_s = node_times_s(

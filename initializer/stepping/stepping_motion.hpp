@@ -29,7 +29,7 @@ struct SteppingMotionSettings {
   double rate_fraction = 0.8;           ///< of every joint's rate limit
   double stepping_speed_m_s = 0.15;     ///< of the base with a wheel in the air
   double max_base_acceleration_m_s2 = 0.3;
-  double steering_window_m = 2.0;  ///< curvature is averaged over this
+  double steering_window_m = 2.0;  ///< curvature is averaged over this, or less where it must
   double base_window_m = 1.5;      ///< base height, pitch and roll, twice in a row
 };
 

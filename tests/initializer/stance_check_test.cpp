@@ -24,9 +24,8 @@ BaseCoordinates base_at(double x, double z, double pitch_rad = 0.0, double yaw_r
 struct World {
   explicit World(const HeightFunction& height, double size_x_m = 24.0, double size_y_m = 14.0)
       : map(make_map(size_x_m, size_y_m, height)), ground(map), check(ground, tables()) {}
-  [[nodiscard]] Stance stance(const BaseCoordinates& base,
-                              Steered steered = Steered::kStraight) const {
-    return check.stance(BaseFrame::from(base), steered, StanceClearances{});
+  [[nodiscard]] Stance stance(const BaseCoordinates& base, int steering = kSteeredStraight) const {
+    return check.stance(BaseFrame::from(base), steering, StanceClearances{});
   }
   TerrainMap map;
   StanceGround ground;
@@ -44,7 +43,7 @@ TEST(StanceTables, AgreeWithTheKinematicTree) {
   q.tail(machine.num_joints()) = machine.transport_posture();
   Eigen::Vector3d moment = tables().moment_chassis_base + tables().moment_folded_base.front();
   for (std::size_t i = 0; i < kNumWheels; ++i) {
-    const LegSample& sample = tables().legs[i][1].samples[7 + i];
+    const LegSample& sample = tables().legs[i][kSteeredStraight].samples[7 + i];
     q[machine.legs[i].hfe] = sample.hfe_rad;
     moment += sample.moment_base;
   }
@@ -52,7 +51,7 @@ TEST(StanceTables, AgreeWithTheKinematicTree) {
   constexpr double kTolerance = 1e-9;
   for (std::size_t i = 0; i < kNumWheels; ++i) {
     const WheeledLeg& leg = machine.legs[i];
-    EXPECT_LT((tables().legs[i][1].samples[7 + i].p_base_wheel -
+    EXPECT_LT((tables().legs[i][kSteeredStraight].samples[7 + i].p_base_wheel -
                machine.tree.position(w, leg.carrier_body, leg.p_carrier_wheel))
                   .norm(),
               kTolerance);
@@ -171,8 +170,8 @@ TEST(StanceCheck, MirroredTerrainGivesMirroredStances) {
   int num_allowed = 0;
   for (int k = 0; k < 60; ++k) {
     const double x = -5.0 + 0.17 * k, y = 1.5 * std::sin(k), yaw = 0.7 * std::cos(3.0 * k);
-    const Stance a = left.stance(base_at(x, 1.0, 0.05, yaw, y, 0.1), Steered::kLeft);
-    const Stance b = right.stance(base_at(x, 1.0, 0.05, -yaw, -y, -0.1), Steered::kRight);
+    const Stance a = left.stance(base_at(x, 1.0, 0.05, yaw, y, 0.1), kNumSteerings - 1);
+    const Stance b = right.stance(base_at(x, 1.0, 0.05, -yaw, -y, -0.1), 0);
     const auto swapped = [](std::uint8_t mask) {
       return (mask & 0b0101) << 1 | (mask & 0b1010) >> 1;
     };
@@ -188,9 +187,9 @@ TEST(StanceCheck, MoreClearanceNeverAllowsMore) {
   const World world(bumps);
   for (int k = 0; k < 200; ++k) {
     const BaseFrame base = BaseFrame::from(base_at(-6.0 + 0.06 * k, 0.9 + 0.004 * k));
-    const Stance plain = world.check.stance(base, Steered::kStraight, StanceClearances{});
+    const Stance plain = world.check.stance(base, kSteeredStraight, StanceClearances{});
     const Stance strict =
-        world.check.stance(base, Steered::kStraight, StanceClearances{}.inflated(0.05));
+        world.check.stance(base, kSteeredStraight, StanceClearances{}.inflated(0.05));
     EXPECT_LE(strict.belly_clear, plain.belly_clear);
     EXPECT_EQ(strict.grounded & ~plain.grounded, 0);
     EXPECT_EQ(strict.swing_clear & ~plain.swing_clear, 0);

@@ -21,7 +21,8 @@ std::string name_of(std::size_t wheel) { return "wheel " + std::string(kLimbName
 
 }  // namespace
 
-MotionBuilder::MotionBuilder(const MotionParts& parts, const CertifiedSequence& sequence)
+MotionBuilder::MotionBuilder(const MotionParts& parts, const CertifiedSequence& sequence,
+                             double steering_window_m)
     : parts_(parts),
       sequence_(sequence),
       mover_(parts.machine, parts.arm, parts.collision, parts.placer.ground(),
@@ -29,7 +30,8 @@ MotionBuilder::MotionBuilder(const MotionParts& parts, const CertifiedSequence& 
       workspace_(parts.machine.tree.make_workspace()),
       transport_(Eigen::VectorXd::Zero(parts.machine.num_coordinates())),
       guess_rad_(parts.placer.default_hfe_rad()),
-      speed_m_s_(parts.settings.nominal_speed_m_s) {
+      speed_m_s_(parts.settings.nominal_speed_m_s),
+      steering_window_m_(steering_window_m) {
   transport_.tail(parts.machine.num_joints()) = parts.machine.transport_posture();
 }
 
@@ -69,6 +71,7 @@ Result<Eigen::VectorXd, std::string> MotionBuilder::posture_at(const PreparedRun
   const BaseRun::Point point = run.base.at(sigma_m);
   const auto placement = placed(point, run.base.support.lifted, run.base.lifted_hfe_rad);
   if (!placement) {
+    missed_ground_ = true;
     return tl::unexpected<std::string>("between nodes a wheel " +
                                        std::string(placement.error().why));
   }
@@ -286,7 +289,7 @@ Result<ArmPosture, MotionFailure> MotionBuilder::arm_after(const std::vector<Pre
 
 Result<std::vector<MotionNode>, MotionFailure> MotionBuilder::build() {
   std::vector<PreparedRun> runs;
-  for (BaseRun& run : base_runs(sequence_, parts_.motion.steering_window_m)) {
+  for (BaseRun& run : base_runs(sequence_, steering_window_m_)) {
     runs.push_back({std::move(run), std::nullopt, {}});
     if (auto prepared = prepare(runs.back()); !prepared) {
       return tl::unexpected<MotionFailure>(prepared.error());

@@ -38,8 +38,11 @@ struct PreparedRun {
 /// Makes the untimed nodes of one sequence.
 class MotionBuilder {
  public:
-  MotionBuilder(const MotionParts& parts, const CertifiedSequence& sequence);
+  MotionBuilder(const MotionParts& parts, const CertifiedSequence& sequence,
+                double steering_window_m);
   [[nodiscard]] Result<std::vector<MotionNode>, MotionFailure> build();
+  /// Whether it failed because of wheels that found no ground to stand on or to clear.
+  [[nodiscard]] bool missed_ground() const { return missed_ground_; }
 
  private:
   using Done = Result<void, MotionFailure>;
@@ -94,6 +97,8 @@ class MotionBuilder {
   ContactFlags contacts_ = kDrivingContacts;
   double speed_m_s_ = 0.0;
   std::size_t state_ = 0;
+  double steering_window_m_;
+  bool missed_ground_ = false;
 };
 
 }  // namespace wex

@@ -187,6 +187,7 @@ MotionBuilder::Done MotionBuilder::prepare(PreparedRun& run) {
   const auto judged = [&](const BaseKnot& knot) { return judge(run.base, knot); };
   guess_rad_ = parts_.placer.default_hfe_rad();
   if (auto smooth = smooth_base(run.base, parts_.motion.base_window_m, judged); !smooth) {
+    missed_ground_ = true;
     return smooth;
   }
   if (prepare_support(run)) return {};
