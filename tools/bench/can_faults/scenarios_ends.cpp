@@ -48,7 +48,7 @@ void flap(Scene& scene, const std::string& what, const std::string& down, const 
     }
     reconnect_s.push_back(1e-9 * static_cast<double>(now_ns() - up_ns));
   }
-  const double motion_ms = longest_motion_without_command_ms(rig.board(), begin_ns);
+  const Motion_ms motion = longest_motion_without_command(rig.board(), begin_ns);
   const std::int64_t first_hold_ns = [&] {
     for (const MachineSample& sample : rig.board().machine) {
       if (sample.time_ns > begin_ns && sample.mode != can::MachineMode::kEnabled) {
@@ -69,20 +69,22 @@ void flap(Scene& scene, const std::string& what, const std::string& down, const 
       "T11", text("%s, %d times", what.c_str(), cycles),
       text("heard again after p50 %.2f, p99 %.2f s; files left open %ld; enabled by itself "
            "%d times; moved %.0f ms after the last command; enabled again when asked",
-           percentile(reconnect_s, 0.5), p99_s, files_more, enabled, motion_ms),
+           percentile(reconnect_s, 0.5), p99_s, files_more, enabled, motion.driven),
       "p99 < 2 s, 0 files, 0 times, <= 150 ms",
-      p99_s < 2.0 && files_more <= 0 && enabled == 0 && motion_ms <= kMaxMotion_ms);
+      p99_s < 2.0 && files_more <= 0 && enabled == 0 && motion.by_itself() <= kMaxMotion_ms);
 }
 
 void print_stop(const char* what, const StopFigures& figures, bool resumed) {
-  print_figure("T12", what,
-               text("last good command -> hold %.0f ms, joints stand %.0f ms (bucket %.3f m on), "
-                    "wheels ramped down %.0f ms (%.2f m on); moved again by itself: %s",
-                    figures.hold_ms, figures.joints_ms, figures.bucket_m, figures.wheels_ms,
-                    figures.base_m, resumed ? "yes" : "no"),
-               "stand <= 150 ms",
-               figures.stood && !resumed && figures.joints_ms > 0.0 &&
-                   figures.joints_ms <= kMaxMotion_ms && figures.wheels_ms <= kMaxMotion_ms);
+  print_figure(
+      "T12", what,
+      text("last good command -> hold %.0f ms, joints stand %.0f ms (bucket %.3f m on), "
+           "wheels ramped down %.0f ms (%.2f m on); moved again by itself: %s; periods late by "
+           "%.0f ms meanwhile",
+           figures.hold_ms, figures.joints_ms, figures.bucket_m, figures.wheels_ms, figures.base_m,
+           resumed ? "yes" : "no", figures.late_ms),
+      "stand <= 150 ms + what periods were late",
+      figures.stood && !resumed && figures.joints_ms > 0.0 &&
+          std::max(figures.joints_ms, figures.wheels_ms) <= kMaxMotion_ms + figures.late_ms);
 }
 
 void kill_host(Scene& scene) {
@@ -147,8 +149,8 @@ void end_processes(Scene& scene, bool) {
 
 void open_the_estop(Scene& scene, bool full) {
   // Tolerances are for User-Mode Linux, where the frames of one period take milliseconds.
-  const int times = full ? 1000 : 8;
-  std::vector<double> reported_ms, silent_ms, stood_ms;
+  const int times = full ? 1000 : 20;
+  std::vector<double> reported_ms, silent_ms, stood_ms, late_ms, speed;
   int not_latched = 0, left_without_edge = 0;
   std::mt19937 random(1);  // NOLINT(cert-msc51-cpp): repeatable on purpose
   std::uniform_real_distribution<double> phase_s(0.0, 0.02);
@@ -159,23 +161,27 @@ void open_the_estop(Scene& scene, bool full) {
       rig.enable();
       // At a moment that no process of ours wakes up for: the only core is asleep or at work.
       const std::int64_t open_ns =
-          now_ns() + static_cast<std::int64_t>(1e9 * (0.6 + phase_s(random)));
+          now_ns() + static_cast<std::int64_t>(1e9 * (0.35 + phase_s(random)));
       rig.board().estop_reported_ns = 0;
       rig.board().estop_open_from_ns = open_ns;
-      sleep_s(1.0);
+      sleep_s(0.34);
+      speed.push_back(rig.board().machine[rig.board().machine.size() - 1].fastest_joint);
+      sleep_s(0.33);
       rig.board().estop_open_from_ns = 0;
-      sleep_s(0.05);
+      sleep_s(0.03);
       not_latched += rig.mode() != can::MachineMode::kEStop;
       rig.operator_does(can::OperatorAction::kReset);  // a level, not an edge
-      sleep_s(0.05);
+      sleep_s(0.03);
       left_without_edge += rig.mode() != can::MachineMode::kEStop;
-      rig.operator_reset();
-      sleep_s(0.3);
+      rig.operator_does(can::OperatorAction::kNone);
+      sleep_s(0.02);
+      rig.operator_does(can::OperatorAction::kReset);
 
       double silent = 0.0;
       for (const CommandRecord& command : rig.board().sent) {
         silent = std::max(silent, 1e-6 * static_cast<double>(command.time_ns - open_ns));
       }
+      late_ms.push_back(lateness_ms(rig.board(), open_ns, open_ns + 200'000'000));
       reported_ms.push_back(1e-6 * static_cast<double>(rig.board().estop_reported_ns - open_ns));
       silent_ms.push_back(silent);
       stood_ms.push_back(stop_figures(rig.board(), open_ns).joints_ms);
@@ -185,18 +191,26 @@ void open_the_estop(Scene& scene, bool full) {
       }
     }
   }
-  const auto row = [](const char* what, std::vector<double>& ms) {
+  const auto row = [](const char* what, std::vector<double> ms) {
     return text("%s p50 %.1f p99 %.1f max %.1f ms", what, percentile(ms, 0.5), percentile(ms, 0.99),
                 percentile(ms, 1.0));
   };
+  double worst_report = 0.0, worst_silence = 0.0, worst_stop = 0.0;  // less what was late
+  for (std::size_t i = 0; i < late_ms.size(); ++i) {
+    worst_report = std::max(worst_report, reported_ms[i] - late_ms[i]);
+    worst_silence = std::max(worst_silence, silent_ms[i] - late_ms[i]);
+    worst_stop = std::max(worst_stop, stood_ms[i] - late_ms[i]);
+  }
+  const bool all_reported = *std::min_element(reported_ms.begin(), reported_ms.end()) >= 0.0;
+  const bool all_drove = *std::min_element(speed.begin(), speed.end()) > 2.0 * kStanding;
   print_figure(
-      "T13", text("e-stop at random phase, %d times", times),
+      "T13", text("e-stop at random phase on the bus, %d times", times),
       row("reported", reported_ms) + "; " + row("last command", silent_ms) + "; " +
-          row("stands", stood_ms) +
+          row("stands", stood_ms) + "; " + row("periods late by", late_ms) +
           text("; not latched %d, left without an edge %d", not_latched, left_without_edge),
-      "reported <= 10 ms (+10), last command <= 20 ms (+5), latched, edge",
-      percentile(reported_ms, 0.0) >= 0.0 && percentile(reported_ms, 1.0) <= 20.0 &&
-          percentile(silent_ms, 1.0) <= 25.0 && not_latched + left_without_edge == 0);
+      "reported <= 20 ms, last command <= 25, stands <= 150 (+ late), latched, edge",
+      all_reported && all_drove && worst_report <= 20.0 && worst_silence <= 25.0 &&
+          worst_stop <= kMaxMotion_ms && not_latched + left_without_edge == 0);
 }
 
 void soak(Scene& scene, bool full) {
@@ -204,26 +218,37 @@ void soak(Scene& scene, bool full) {
   Rig rig(scene);
   rig.drive(Motion::kSine);
   sleep_s(5.0);
-  const std::int64_t begin_ns = now_ns();
-  const long resident_kb = rig.board().host_resident_kb;
-  sleep_s(duration_s);
   const Blackboard& board = rig.board();
-  const can::BusStatistics& bus = board.statistics;
+  const std::int64_t begin_ns = now_ns();
+  const long host_kb = board.host_resident_kb, machine_kb = board.machine_resident_kb;
+  sleep_s(duration_s);
+  const can::BusStatistics bus = board.statistics;
   const int holds = entries(board, can::MachineMode::kHold, begin_ns);
   const bool enabled = rig.mode() == can::MachineMode::kEnabled;
-  const long growth_kb = board.host_resident_kb - resident_kb;
+  const long growth_kb =
+      std::max(board.host_resident_kb - host_kb, board.machine_resident_kb - machine_kb);
+  std::string bins;
+  for (int i = 0; i < can::LatencyHistogram::kNumBins; ++i) {
+    const bool last = i + 1 == can::LatencyHistogram::kNumBins;
+    const long count = bus.command_to_report.bins()[i];
+    if (count == 0) continue;
+    const double edge_ms = can::LatencyHistogram::kEdges_ms[last ? i - 1 : i];
+    bins += text(" %s%g: %ld", last ? ">" : "<", edge_ms, count);
+  }
   print_figure(
       "T18", text("soak, all joints at 100 Hz, %.0f s", duration_s),
       text(
           "%ld frames sent, %ld received, lost %ld, overflows %ld, holds %d; load %.0f %% (busiest "
-          "second %.0f %%) of 500k/2M; command to report p50 %.1f p99 %.1f max %.1f ms; memory "
-          "+%ld kB",
+          "second %.0f %%) of 500k/2M; command to report [ms]%s, max %.1f; memory +%ld kB; "
+          "periods late by %.0f ms at most",
           bus.frames_sent(), bus.frames_received(), bus.frames_lost(), bus.receive_overflows, holds,
-          100.0 * bus.bus_load, 100.0 * bus.max_bus_load, bus.command_to_report.percentile_ms(0.5),
-          bus.command_to_report.percentile_ms(0.99), bus.command_to_report.max_ms(), growth_kb),
-      "0 lost, 0 overflows, 0 holds, load <= 50 %, <= 60 %, <= 200 kB",
-      bus.frames_lost() == 0 && bus.receive_overflows == 0 && holds == 0 && enabled &&
-          bus.bus_load <= 0.50 && bus.max_bus_load <= 0.60 && growth_kb <= 200);
+          100.0 * bus.bus_load, 100.0 * bus.max_bus_load, bins.c_str(),
+          bus.command_to_report.max_ms(), growth_kb, lateness_ms(board, begin_ns, now_ns())),
+      "0 lost, 0 overflows, 0 holds (unless a process was late by 30 ms), load <= 50 %, <= 60 %, "
+      "<= 200 kB",
+      bus.frames_lost() == 0 && bus.receive_overflows == 0 &&
+          unexcused_holds(board, begin_ns) == 0 && (enabled || holds > 0) && bus.bus_load <= 0.50 &&
+          bus.max_bus_load <= 0.60 && growth_kb <= 200);
 }
 
 void jump_the_clock(Scene& scene, bool) {
@@ -242,8 +267,9 @@ void jump_the_clock(Scene& scene, bool) {
   const int holds = entries(rig.board(), can::MachineMode::kHold, begin_ns);
   const bool enabled = rig.mode() == can::MachineMode::kEnabled;
   print_figure("T22", "wall clock jumps by +-1 h four times while driving",
-               text("holds %d, still enabled: %s", holds, enabled ? "yes" : "no"), "0 holds",
-               holds == 0 && enabled);
+               text("holds %d, still enabled: %s", holds, enabled ? "yes" : "no"),
+               "0 holds (unless a process was late by 30 ms)",
+               unexcused_holds(rig.board(), begin_ns) == 0 && (enabled || holds > 0));
 }
 
 }  // namespace wex::can_faults

