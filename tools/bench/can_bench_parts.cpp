@@ -11,6 +11,12 @@ bool wanted(const CanBenchSetting& setting, const std::string& test) {
          std::find(setting.only.begin(), setting.only.end(), test) != setting.only.end();
 }
 
+constexpr const char* kCountSurvivors =
+    "/^#/ || !NF { next } FNR == NR { ++files; next } { ++left; without += !/  # ./ } "
+    "END { printf \"%d files, %d survivors recorded, %d of them without a reason\\n\", files, "
+    "left, "
+    "without; exit without > 0 }";
+
 class Parts {
  public:
   explicit Parts(const CanBenchSetting& setting)
@@ -83,8 +89,10 @@ std::vector<CanBenchPart> can_bench_parts(const CanBenchSetting& setting) {
              900});
   parts.add("T2", "every signal at and beyond its ends, NaN, infinities", "0 wraps",
             "socketcan/codec_range_test");
-  parts.add("T3", "a million random frames", "none accepted beyond chance",
+  parts.add("T3", "a million random frames into the decoder", "none accepted beyond chance",
             "socketcan/codec_fuzz_test");
+  parts.add("T3", "a million random frames into both receivers, some with a right CRC",
+            "0 enabled, 0 commands used", "socketcan/receiver_fuzz_test");
   parts.add("T4", "all 1- to 3-bit flips", "all detected", "socketcan/protection_bit_flip_test");
   parts.add("T5", "counter: repeat, skip, reorder, wrap, restart", "verdict table exact",
             "socketcan/protection_test", "SequenceCheck.*");
@@ -122,15 +130,22 @@ std::vector<CanBenchPart> can_bench_parts(const CanBenchSetting& setting) {
               parts.tests() + "/socketcan/socketcan_machine_vcan_test"},
              {"WITH_VCAN_TIMEOUT=200"},
              230});
-  if (full) {
-    parts.add({"T21",
-               "mutation of the protection (all files: tools/check/mutate_safety_files)",
-               "survivors listed",
-               CanBenchOutput::kScript,
-               {parts.source() + "/tools/check/mutate_safety_files", "socketcan/protection"},
-               {},
-               1800});
-  }
+  // Mutation takes hours: here only what it left is counted.
+  parts.add({"T21",
+             "mutation of the safety files (tools/check/mutate_safety_files)",
+             "each survivor with its reason",
+             CanBenchOutput::kScript,
+             {"awk", kCountSurvivors, parts.source() + "/tools/check/safety_files.txt",
+              parts.source() + "/tools/check/surviving_mutants.txt"},
+             {},
+             10});
+  parts.add({"T22",
+             "both ends and a stopping signal in three threads under ThreadSanitizer",
+             "no data race",
+             CanBenchOutput::kGoogleTest,
+             {"setarch", "-R", parts.tests() + "/threads/both_ends_threads_test"},
+             {},
+             120});
   return parts.take();
 }
 

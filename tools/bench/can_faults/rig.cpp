@@ -92,6 +92,7 @@ Rig::Rig(Scene& scene, const HostOptions& options)
 Rig::~Rig() {
   board_->end_host = board_->end_machine = true;
   if (host_ > 0) kill(host_, SIGCONT);
+  if (machine_ > 0) kill(machine_, SIGCONT);
   end(host_);
   end(machine_);
 }
@@ -118,6 +119,8 @@ void Rig::signal_host(int signal) {
   kill(host_, signal);
   if (signal == SIGKILL) reap(host_);
 }
+
+void Rig::signal_machine(int signal) { kill(machine_, signal); }
 
 can::MachineMode Rig::mode() const {
   const std::size_t n = board_->machine.size();

@@ -40,6 +40,7 @@ class Rig {
   void end_host();
   void kill_machine();
   void signal_host(int signal);
+  void signal_machine(int signal);
 
   [[nodiscard]] Blackboard& board() { return *board_; }
   [[nodiscard]] pid_t host() const { return host_; }

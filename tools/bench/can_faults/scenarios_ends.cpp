@@ -123,11 +123,45 @@ void kill_machine(Scene& scene) {
       fault_ms = 1e-6 * static_cast<double>(sample.time_ns - killed_ns);
     }
   }
-  print_figure("T12", "machine's electronics killed while driving",
-               text("host in fault after %.0f ms, stays there: %s", fault_ms,
-                    rig.lifecycle() == Lifecycle::kFault ? "yes" : "no"),
-               "<= 250 ms, latched",
-               fault_ms >= 0.0 && fault_ms <= 250.0 && rig.lifecycle() == Lifecycle::kFault);
+  const double host_late_ms = lateness_ms(board, killed_ns, killed_ns + 300'000'000);
+  print_figure(
+      "T12", "machine's electronics killed (kill -9) while driving",
+      text("host in fault after %.0f ms, stays there: %s", fault_ms,
+           rig.lifecycle() == Lifecycle::kFault ? "yes" : "no"),
+      "<= 250 ms (+ late), latched",
+      fault_ms >= 0.0 && fault_ms <= 250.0 + host_late_ms && rig.lifecycle() == Lifecycle::kFault);
+}
+
+/// The electronics' processor stands still for a second, then works on where it was, with a second
+/// of commands waiting. The simulated plant stands still with it: its own periods count.
+void freeze_machine(Scene& scene) {
+  Rig rig(scene);
+  rig.drive();
+  const std::int64_t frozen_ns = now_ns();
+  rig.signal_machine(SIGSTOP);
+  sleep_s(1.0);
+  const auto at = static_cast<std::ptrdiff_t>(rig.board().machine.size());
+  const std::int64_t continued_ns = now_ns();
+  rig.signal_machine(SIGCONT);
+  sleep_s(1.0);
+  const Blackboard& board = rig.board();
+  const auto stands_at = std::find_if(
+      board.machine.begin() + at, board.machine.end(), [](const MachineSample& sample) {
+        return std::max(sample.fastest_joint, sample.fastest_wheel_m_s) <= kStanding;
+      });
+  const auto moving_ms = 10.0 * static_cast<double>(stands_at - board.machine.begin() - at);
+  const CommandCheck check = check_commands(board, frozen_ns);
+  const bool resumed = entries(board, can::MachineMode::kEnabled, continued_ns) > 0;
+  const bool stands = board.machine[board.machine.size() - 1].fastest_joint <= kStanding;
+  print_figure(
+      "T12", "machine's electronics frozen (SIGSTOP) for 1 s while driving, then continued",
+      text("%ld commands waited, %ld older than 100 ms accepted; moved on for %.0f ms; host in "
+           "fault: %s; moved again by itself: %s",
+           check.old_received, check.old_accepted, moving_ms,
+           rig.lifecycle() == Lifecycle::kFault ? "yes" : "no", resumed ? "yes" : "no"),
+      "0 old accepted, <= 150 ms, fault latched",
+      check.old_received > 0 && check.old_accepted == 0 && moving_ms <= kMaxMotion_ms && stands &&
+          !resumed && rig.lifecycle() == Lifecycle::kFault);
 }
 
 }  // namespace
@@ -145,6 +179,7 @@ void end_processes(Scene& scene, bool) {
   kill_host(scene);
   freeze_host(scene);
   kill_machine(scene);
+  freeze_machine(scene);
 }
 
 void open_the_estop(Scene& scene, bool full) {
@@ -161,10 +196,10 @@ void open_the_estop(Scene& scene, bool full) {
       rig.enable();
       // At a moment that no process of ours wakes up for: the only core is asleep or at work.
       const std::int64_t open_ns =
-          now_ns() + static_cast<std::int64_t>(1e9 * (0.35 + phase_s(random)));
+          now_ns() + static_cast<std::int64_t>(1e9 * (0.6 + phase_s(random)));
       rig.board().estop_reported_ns = 0;
       rig.board().estop_open_from_ns = open_ns;
-      sleep_s(0.34);
+      sleep_s(0.59);
       speed.push_back(rig.board().machine[rig.board().machine.size() - 1].fastest_joint);
       sleep_s(0.33);
       rig.board().estop_open_from_ns = 0;
@@ -202,15 +237,16 @@ void open_the_estop(Scene& scene, bool full) {
     worst_stop = std::max(worst_stop, stood_ms[i] - late_ms[i]);
   }
   const bool all_reported = *std::min_element(reported_ms.begin(), reported_ms.end()) >= 0.0;
-  const bool all_drove = *std::min_element(speed.begin(), speed.end()) > 2.0 * kStanding;
-  print_figure(
-      "T13", text("e-stop at random phase on the bus, %d times", times),
-      row("reported", reported_ms) + "; " + row("last command", silent_ms) + "; " +
-          row("stands", stood_ms) + "; " + row("periods late by", late_ms) +
-          text("; not latched %d, left without an edge %d", not_latched, left_without_edge),
-      "reported <= 20 ms, last command <= 25, stands <= 150 (+ late), latched, edge",
-      all_reported && all_drove && worst_report <= 20.0 && worst_silence <= 25.0 &&
-          worst_stop <= kMaxMotion_ms && not_latched + left_without_edge == 0);
+  const double slowest = *std::min_element(speed.begin(), speed.end());
+  print_figure("T13", text("e-stop at random phase on the bus, %d times", times),
+               row("reported", reported_ms) + "; " + row("last command", silent_ms) + "; " +
+                   row("stands", stood_ms) + "; " + row("periods late by", late_ms) +
+                   text("; not latched %d, left without an edge %d; turned at >= %.2f rad/s before",
+                        not_latched, left_without_edge, slowest),
+               "reported <= 20 ms, last command <= 25, stands <= 150 (+ late), latched, edge",
+               all_reported && slowest > 2.0 * kStanding && worst_report <= 20.0 &&
+                   worst_silence <= 25.0 && worst_stop <= kMaxMotion_ms &&
+                   not_latched + left_without_edge == 0);
 }
 
 void soak(Scene& scene, bool full) {
