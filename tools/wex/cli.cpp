@@ -266,6 +266,8 @@ void add_bench(CLI::App& app, DriveBenchOptions& drive, CanBenchOptions& can) {
       "can",
       "The bus: every test of protocol, interface and electronics, with faults, in one table");
   bus.add_flag("--full", can.full, "All of it, about 75 minutes [under 6 minutes]");
+  bus.add_option("--only", can.only, "Only these tests (repeatable), the others' rows as they were")
+      ->type_name("T1..T22");
   bus.add_option("--out", can.out, "Folder for can_bench.csv and the log")
       ->type_name("DIR")
       ->capture_default_str();
