@@ -330,6 +330,12 @@ bool HostFeedback::dbc_matches() const noexcept {
   });
 }
 
+bool HostFeedback::operator_stopped() const noexcept {
+  return std::any_of(status_.begin(), status_.end(), [](const auto& status) {
+    return (status.value.fault_bits & kReportsOperatorStop) != 0;
+  });
+}
+
 bool HostFeedback::take_operator_reset() noexcept { return std::exchange(operator_reset_, false); }
 bool HostFeedback::take_restart() noexcept { return std::exchange(restarted_, false); }
 bool HostFeedback::take_masquerade() noexcept { return std::exchange(masquerade_, false); }

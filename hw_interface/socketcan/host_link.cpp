@@ -45,10 +45,10 @@ void HostLink::on_bus_time(const CanFrame& frame, std::int64_t now_ns) noexcept 
     second_begin_ns_ = now_ns;
   }
   const double time_s = bus_time_s(frame);
-  busy_s_ += time_s;
+  statistics_.busy_s += time_s;
   busy_this_second_s_ += time_s;
   if (now_ns > first_ns_) {
-    statistics_.bus_load = busy_s_ / (1e-9 * static_cast<double>(now_ns - first_ns_));
+    statistics_.bus_load = statistics_.busy_s / (1e-9 * static_cast<double>(now_ns - first_ns_));
   }
 }
 

@@ -87,7 +87,7 @@ class HostLink {
 
   std::int64_t first_ns_ = 0, second_begin_ns_ = 0;
   bool first_ = true;
-  double busy_s_ = 0.0, busy_this_second_s_ = 0.0;
+  double busy_this_second_s_ = 0.0;
   std::array<std::array<std::int64_t, 256>, kNumZones> sent_ns_{};  ///< by counter
   std::array<int, kNumZones> last_reported_{};
 };
