@@ -92,11 +92,11 @@ class CanRun : public ::testing::Test {
 
   fs::path map() const { return folder_ / "map.asc"; }
   void start_machine() {
-    machine_.emplace(
-        WEX_PROGRAM,
-        std::vector<std::string>{"machine", map().string(), "--can", "vcan0", "--start", "8,8,0",
-                                 "--lock-step", "--log", (folder_ / "machine.csv").string()},
-        folder_ / "machine.txt");
+    machine_.emplace(WEX_PROGRAM,
+                     std::vector<std::string>{"machine", map().string(), "--can", "vcan0",
+                                              "--start", "8,8,0", "--lock-step", "--patience", "2",
+                                              "--log", (folder_ / "machine.csv").string()},
+                     folder_ / "machine.txt");
     ASSERT_TRUE(wait_for(20.0, [&] { return heard(MessageKind::kZoneStatus); }))
         << machine_->output();
   }
@@ -200,7 +200,7 @@ TEST_F(CanRun, AKilledHostLeavesAMachineThatStands) {
   start_run();
   wait_for_motion();
   host_->send(SIGKILL);
-  // The clock of a machine in lock step waits a second before it runs by itself.
+  // The clock of an enabled machine in lock step waits for --patience before it runs by itself.
   ASSERT_TRUE(wait_for(10.0, [&] { return mode() == MachineMode::kFault; }));
   sleep(1);
   const MachineLog log = end_machine();

@@ -80,11 +80,14 @@ Result<can::MachineMode> operate(can::FramePort& port, can::MonotonicClock& cloc
   // counts on its edge: first without action, then with it, at last without.
   constexpr int kIdleFrames = 5, kActionFrames = 5;
   constexpr double kGap_s = 0.03, kHear_s = 0.5, kPatience_s = 2.0;
+  const auto nobody = [](const char* sent) {
+    return fail(ErrorCode::kBadInput, std::string("no machine is heard on the bus") + sent +
+                                          ": is it switched on, and are the bit rates equal?");
+  };
   ZoneModes modes;
-  listen(port, clock, kHear_s, modes);
-  if (!modes.heard()) {
-    return fail(ErrorCode::kBadInput,
-                "no machine is heard on the bus: is it switched on, and are the bit rates equal?");
+  if (action == can::OperatorAction::kReset) {  // a stop goes out at once
+    listen(port, clock, kHear_s, modes);
+    if (!modes.heard()) return nobody("");
   }
   can::SendContext context;
   const auto send = [&](can::OperatorAction what, int times) {
@@ -109,6 +112,7 @@ Result<can::MachineMode> operate(can::FramePort& port, can::MonotonicClock& cloc
     listen(port, clock, kGap_s, modes);
   }
   if (confirmed()) return modes.mode();
+  if (action == can::OperatorAction::kStop && !modes.heard()) return nobody(", the stop was sent");
   const std::string mode =
       modes.heard() ? std::string("reports ") + can::to_string(modes.mode()) : "is silent";
   return fail(ErrorCode::kStoppedSafely,

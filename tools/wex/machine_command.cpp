@@ -97,7 +97,8 @@ Result<void> run_machine(const MachineOptions& options, std::ostream& out) {
   MachineRunner runner(**electronics, *socket, pacer,
                        {.lock_step = options.lock_step,
                         .estop_after_s = options.estop_after_s,
-                        .exit_after_s = options.exit_after_s},
+                        .exit_after_s = options.exit_after_s,
+                        .free_run_in_session_after_s = options.patience_s},
                        [&](std::int64_t now_ms) {
                          if (log) log->row(now_ms, **electronics, **plant);
                        });

@@ -94,6 +94,7 @@ class Pipeline {
         folder_(std::move(folder)),
         bus_(std::move(bus)),
         lock_step_(bus_ && bus_->lock_step()),
+        bus_begin_s_(bus_ ? bus_->read().t_s : 0.0),
         watch_(watch),
         progress_(progress) {
     report_.options = options;
@@ -239,6 +240,7 @@ class Pipeline {
     }
     bus_->deactivate();
     report_.bus = bus_report(report_.options.can_interface, lock_step_, *bus_);
+    report_.bus->machine_s = bus_->read().t_s - bus_begin_s_;
     StageTime time = watch_.lap();
     if (settings.solve_beside && report_.drive) {
       for (const SolveSample& solve : report_.drive->solves) time.cpu_s += solve.cpu_time_s;
@@ -289,6 +291,7 @@ class Pipeline {
   OutputFolder folder_;
   std::unique_ptr<can::SocketCanMachine> bus_;  ///< empty: the simulation
   bool lock_step_;
+  double bus_begin_s_;  ///< machine time
   Stopwatch watch_;
   Progress& progress_;
   RunReport report_;
