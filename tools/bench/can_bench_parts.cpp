@@ -84,7 +84,7 @@ std::vector<CanBenchPart> can_bench_parts(const CanBenchSetting& setting) {
              ">= 100,000, 0 mismatches",
              CanBenchOutput::kScript,
              {"env", "PYTHONDONTWRITEBYTECODE=1", "/usr/bin/python3", oracle,
-              parts.tests() + "/socketcan/codec_oracle", full ? "500000" : "50000"},
+              parts.tests() + "/socketcan/codec_oracle", full ? "200000" : "50000"},
              {},
              900});
   parts.add("T2", "every signal at and beyond its ends, NaN, infinities", "0 wraps",
