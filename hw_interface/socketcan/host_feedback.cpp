@@ -49,7 +49,7 @@ Result<HostFeedback> HostFeedback::create(const MachineModel& machine,
   WEX_EXPECTS(machine.num_joints() <= kMaxJoints && settings.max_crc_errors <= kMaxCrcErrors);
   for (const Joint& joint : machine.joints) {
     const JointSlot slot = slot_of(joint.name);
-    if (slot.zone < 0 || slot.index < 0) {
+    if (slot.zone < 0) {
       return fail(ErrorCode::kBadInput, "the joint '" + joint.name + "' of the machine '" +
                                             machine.name +
                                             "' has no place on the bus: no signal of wex.dbc has "
@@ -106,7 +106,6 @@ void HostFeedback::observe_stamp(std::uint32_t stamp_ms, std::int64_t now_ns) no
 }
 
 FrameVerdict HostFeedback::refuse(CodecError error, std::int64_t now_ns) noexcept {
-  if (error == CodecError::kUnknownId) return FrameVerdict::kUnknown;
   if (error != CodecError::kBadCrc) return FrameVerdict::kMalformed;
   const double now = clock_.now_s(now_ns);
   const long before_window = crc_errors_ - settings_.max_crc_errors;
