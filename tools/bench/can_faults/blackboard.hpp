@@ -41,6 +41,7 @@ struct MachineSample {
   std::int64_t time_ns = 0;
   std::int64_t commanded_ns = 0;  ///< when the last ZoneCommand was put in force
   can::MachineMode mode = {};
+  float turn_rad_s = 0.0F;         ///< of the joint that is driven, with its sign
   float fastest_joint = 0.0F;      ///< rad/s or m/s, all joints but the wheels
   float fastest_wheel_m_s = 0.0F;  ///< at the circumference
   std::array<float, 3> p_base_bucket_m{};

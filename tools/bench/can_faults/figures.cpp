@@ -48,16 +48,17 @@ class MotionWatch {
     commanded_ns_ = sample.commanded_ns;
     time_ns_ = sample.time_ns;
     const double since_ms = ms_between(sample.commanded_ns, sample.time_ns);
-    if (sample.fastest_joint <= kStanding) {
-      stood_ = true;
-      return {};
-    }
+    const bool turned_back = sample.turn_rad_s * turn_rad_s_ < 0.0F;  // stood between two samples
+    turn_rad_s_ = sample.turn_rad_s;
+    stood_ = stood_ || turned_back || sample.fastest_joint <= kStanding;
+    if (sample.fastest_joint <= kStanding) return {};
     return stood_ && since_ms <= kSwing_ms ? Motion_ms{} : Motion_ms{since_ms, late_ms_};
   }
 
  private:
   std::int64_t commanded_ns_ = 0, time_ns_ = 0;
   double late_ms_ = 0.0;
+  float turn_rad_s_ = 0.0F;
   bool stood_ = false;
 };
 

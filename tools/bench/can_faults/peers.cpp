@@ -56,6 +56,8 @@ class Observer {
 
   MachineSample sample(const can::PlantState& state) {
     MachineSample sample;
+    const int turn = machine_.arm->coordinates[0] - kNumBaseCoordinates;
+    sample.turn_rad_s = static_cast<float>(state.rate[turn]);
     q_.setZero();  // the bucket as seen from the base
     for (int j = 0; j < machine_.num_joints(); ++j) {
       q_[kNumBaseCoordinates + j] = state.position[j];
