@@ -146,6 +146,15 @@ void Rig::drive(Motion motion) {
   enable();
   board_->motion = motion;
   sleep_s(1.5);
+  if (motion == Motion::kSteady) wait_for_motion();
+}
+
+double Rig::wait_for_motion() {
+  constexpr float kUnderWay = 0.05F;
+  const auto speed = [&] { return board_->machine[board_->machine.size() - 1].fastest_joint; };
+  static_cast<void>(
+      wait_for(10.0, [&] { return mode() == can::MachineMode::kEnabled && speed() > kUnderWay; }));
+  return speed();
 }
 
 void Rig::operator_does(can::OperatorAction action) {

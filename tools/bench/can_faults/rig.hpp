@@ -32,6 +32,9 @@ class Rig {
   void enable();
   /// Enabled and moving steadily (or as a sine), for long enough to be at speed.
   void drive(Motion motion = Motion::kSteady);
+  /// Speed of the fastest joint [rad/s, m/s] once it is well under way, at most 10 s later: on a
+  /// loaded machine false holds begin it anew.
+  double wait_for_motion();
   /// The operator's terminal: at first nothing, then the reset. A rising edge.
   void operator_reset();
   /// One frame of the operator's terminal.

@@ -194,14 +194,13 @@ void open_the_estop(Scene& scene, bool full) {
     for (int i = 0; i < 50 && begun < times; ++i, ++begun) {
       rig.board().motion = Motion::kSteady;
       rig.enable();
+      speed.push_back(rig.wait_for_motion());
       // At a moment that no process of ours wakes up for: the only core is asleep or at work.
       const std::int64_t open_ns =
-          now_ns() + static_cast<std::int64_t>(1e9 * (0.6 + phase_s(random)));
+          now_ns() + static_cast<std::int64_t>(1e9 * (0.1 + phase_s(random)));
       rig.board().estop_reported_ns = 0;
       rig.board().estop_open_from_ns = open_ns;
-      sleep_s(0.59);
-      speed.push_back(rig.board().machine[rig.board().machine.size() - 1].fastest_joint);
-      sleep_s(0.33);
+      sleep_s(0.43);
       rig.board().estop_open_from_ns = 0;
       sleep_s(0.03);
       not_latched += rig.mode() != can::MachineMode::kEStop;
