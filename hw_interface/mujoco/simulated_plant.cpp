@@ -200,6 +200,7 @@ JointMeasurement SimulatedPlant::measure() const noexcept {
     measured.rate[i] = impl_->data->qvel[impl_->addresses[i].dof];
     measured.effort[i] = impl_->data->actuator_force[i];
   }
+  measured.pitch_rad = base()[kBasePitch];
   return measured;
 }
 

@@ -94,7 +94,8 @@ class HostFeedback {
   struct Receiver {
     SequenceCheck sequence{SequenceCheck::Settings{}};
     bool heard = false;
-    double heard_s = 0.0;  ///< machine time of the last frame in order
+    double heard_s = 0.0;    ///< machine time of the last frame in order
+    double checked_s = 0.0;  ///< likewise of the last one whose counter was looked at
   };
   template <typename Message>
   struct Latest : Receiver {
