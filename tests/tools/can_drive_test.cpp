@@ -2,6 +2,7 @@
 // what result.json says of the bus. The machine is scripted, or electronics behind a pipe.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -9,6 +10,7 @@
 #include "models/excavator/mjcf.hpp"
 #include "tests/support/host_bench.hpp"
 #include "tools/wex/drive.hpp"
+#include "tools/wex/real_time_priority.hpp"
 #include "tools/wex/run_report.hpp"
 #include "tools/wex/solver_thread.hpp"
 
@@ -335,6 +337,22 @@ TEST(SolverThread, EndsInEveryState) {
     finished.begin({});
     std::this_thread::sleep_for(std::chrono::milliseconds(20));  // its result is not taken
   }
+}
+
+TEST(RealTimePriorityTest, IsGivenBackAndNotInherited) {
+  const int before = sched_getscheduler(0);
+  {
+    const RealTimePriority priority;
+    if (priority.granted()) {
+      EXPECT_EQ(sched_getscheduler(0) & ~SCHED_RESET_ON_FORK, SCHED_FIFO);
+    } else {
+      EXPECT_EQ(sched_getscheduler(0), before);
+    }
+    int beside = -1;
+    std::thread([&] { beside = sched_getscheduler(0); }).join();
+    EXPECT_EQ(beside, before);
+  }
+  EXPECT_EQ(sched_getscheduler(0), before);
 }
 
 TEST(BusReport, SaysWhatHappenedOnTheBus) {

@@ -11,6 +11,7 @@
 #include "hw_interface/socketcan/can_socket.hpp"
 #include "tools/wex/bus_monitor.hpp"
 #include "tools/wex/bus_report.hpp"
+#include "tools/wex/real_time_priority.hpp"
 #include "tools/wex/stop_signal.hpp"
 
 namespace wex::app {
@@ -212,6 +213,8 @@ Result<void> run_can(const CanOptions& options, std::ostream& out) {
     if (!model) return tl::unexpected(model.error());
     auto machine = can::SocketCanMachine::open(options.can_interface, *model, {0.0, 0.0});
     if (!machine) return tl::unexpected(machine.error());
+    std::optional<RealTimePriority> priority;
+    if (!(*machine)->lock_step()) priority.emplace();
     return keep_enabled(**machine, options.duration_s, out, stop);
   }
   Result<can::CanSocket> socket = can::CanSocket::open(options.can_interface);

@@ -12,6 +12,7 @@
 #include "tools/wex/motion_csv.hpp"
 #include "tools/wex/output_folder.hpp"
 #include "tools/wex/overview_picture.hpp"
+#include "tools/wex/real_time_priority.hpp"
 #include "tools/wex/scenario.hpp"
 #include "tools/wex/timeline_picture.hpp"
 
@@ -231,6 +232,8 @@ class Pipeline {
     DriveSettings settings;
     settings.solve_delay_s = report_.options.solve_delay_s;
     settings.solve_beside = !lock_step_;
+    std::optional<RealTimePriority> priority;
+    if (!lock_step_) priority.emplace();
     if (const Result<void> enabled = bus_->activate(); enabled) {
       report_.drive = drive(scenario_.terrain, scenario_.machine, *report_.refined,
                             scenario_.task.goal, *bus_, instruments, settings);
@@ -239,6 +242,7 @@ class Pipeline {
       report_.failure = enabled.error();
     }
     bus_->deactivate();
+    priority.reset();
     report_.bus = bus_report(report_.options.can_interface, lock_step_, *bus_);
     report_.bus->machine_s = bus_->read().t_s - bus_begin_s_;
     StageTime time = watch_.lap();
