@@ -309,6 +309,7 @@ void Electronics::act(std::int64_t now_ms) noexcept {
       if (joint < 0) continue;
       input_.spool[joint] = output.spool[i];
       input_.wheel_rate[joint] = output.wheel_rate[i];
+      input_.braked[joint] = output.brake[i];
     }
   }
   input_.motion_released = enabled;

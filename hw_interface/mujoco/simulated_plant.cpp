@@ -105,12 +105,13 @@ struct SimulatedPlant::Impl {
 
   /// One control period: valves, physics.
   void advance(const std::array<double, kMaxJoints>& spool,
-               const std::array<double, kMaxJoints>& wheel_rate, bool released) noexcept {
+               const std::array<double, kMaxJoints>& wheel_rate, bool released,
+               const std::array<bool, kMaxJoints>& braked) noexcept {
     if (broken) {
       data->time += settings.control_period_s;
       return;
     }
-    const std::array<double, kMaxJoints> rate = valves.update(spool, wheel_rate, released);
+    const std::array<double, kMaxJoints> rate = valves.update(spool, wheel_rate, released, braked);
     for (int i = 0; i < machine.num_joints(); ++i) {
       data->ctrl[i] = rate[i];
       const Address& address = addresses[i];
@@ -162,11 +163,11 @@ Result<std::unique_ptr<SimulatedPlant>> SimulatedPlant::create(const MachineMode
 }
 
 void SimulatedPlant::tick(const ActuatorCommand& command) noexcept {
-  impl_->advance(command.spool, command.rate, true);
+  impl_->advance(command.spool, command.rate, true, {});
 }
 
 void SimulatedPlant::act(const can::PlantInput& input) noexcept {
-  impl_->advance(input.spool, input.wheel_rate, input.motion_released);
+  impl_->advance(input.spool, input.wheel_rate, input.motion_released, input.braked);
 }
 
 Result<void> SimulatedPlant::settle() {
