@@ -1,6 +1,7 @@
 #include "hw_interface/electronics/electronics.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace wex::can {
@@ -268,6 +269,12 @@ void Electronics::follow_automaton(std::int64_t now_ms) noexcept {
 }
 
 void Electronics::receive(std::int64_t now_ms) noexcept {
+  constexpr double kMsPerS = 1e3;
+  const auto period_ms = std::llround(kMsPerS * settings_.zones.period_s);
+  take_all(settings_.lock_step ? now_ms + period_ms : now_ms);
+}
+
+void Electronics::take_all(std::int64_t now_ms) noexcept {
   CanFrame frame;
   while ((receive_status_ = port_->receive(frame)) == SocketStatus::kOk) {
     handle(frame, now_ms);
@@ -317,7 +324,7 @@ void Electronics::act(std::int64_t now_ms) noexcept {
 }
 
 void Electronics::tick(std::int64_t now_ms) noexcept {
-  receive(now_ms);
+  take_all(now_ms);
   const SelfCheck check{
       .sensors_valid = state_.sensors_valid,
       .base_pose_valid = state_.base_pose_valid,

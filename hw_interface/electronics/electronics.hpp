@@ -61,7 +61,8 @@ class Electronics {
       const MachineModel& machine, Plant& plant, FramePort& port, RandomSource& random,
       const ElectronicsSettings& settings = {});
 
-  /// Takes everything that has come. now_ms: machine time, never goes back.
+  /// Takes everything that has come. now_ms: machine time, never goes back. In lock step the clock
+  /// stands meanwhile; what comes then counts as of the period that is about to run.
   void receive(std::int64_t now_ms) noexcept;
   /// One period that ends at now_ms; receives first.
   void tick(std::int64_t now_ms) noexcept;
@@ -101,6 +102,7 @@ class Electronics {
     std::array<double, kMaxZoneJoints> position{}, rate{};  ///< measured
   };
 
+  void take_all(std::int64_t now_ms) noexcept;
   void handle(const CanFrame& frame, std::int64_t now_ms) noexcept;
   template <typename Message>
   bool take(const CanFrame& frame, Stream& stream, int silence_ms, Message& message,
