@@ -80,14 +80,17 @@ Result<can::MachineMode> operate(can::FramePort& port, can::MonotonicClock& cloc
   // The receiver trusts a sender that it has not heard for long after three frames, and a reset
   // counts on its edge: first without action, then with it, at last without.
   constexpr int kIdleFrames = 5, kActionFrames = 5;
-  constexpr double kGap_s = 0.03, kHear_s = 0.5, kPatience_s = 2.0;
+  constexpr double kGap_s = 0.03, kHear_s = 2.0, kPatience_s = 2.0;
   const auto nobody = [](const char* sent) {
     return fail(ErrorCode::kBadInput, std::string("no machine is heard on the bus") + sent +
                                           ": is it switched on, and are the bit rates equal?");
   };
   ZoneModes modes;
   if (action == can::OperatorAction::kReset) {  // a stop goes out at once
-    listen(port, clock, kHear_s, modes);
+    const std::int64_t begin_ns = clock.now_ns();
+    while (!modes.heard() && seconds_since(begin_ns, clock) < kHear_s) {
+      listen(port, clock, kGap_s, modes);
+    }
     if (!modes.heard()) return nobody("");
   }
   can::SendContext context;
