@@ -107,6 +107,14 @@ std::vector<CanBenchPart> can_bench_parts(const CanBenchSetting& setting) {
     add_on_the_bus(parts, setting, {"T13"}, 2700);
     add_on_the_bus(parts, setting, {"T15", "T17", "T22"}, 300);
     add_on_the_bus(parts, setting, {"T18"}, 2000);
+    parts.add({"T18",
+               "a drive over the bus in real time, not in lock step",
+               "no fault, stands at its end",
+               CanBenchOutput::kGoogleTest,
+               {parts.source() + "/tools/with_vcan", "--",
+                (setting.build / "tests/end_to_end/can_real_time_test").string()},
+               {"WITH_VCAN_RT=20", "WITH_VCAN_TIMEOUT=280"},
+               310});
   }
   parts.add("T13", "e-stop 1000 times at random phase, without a bus", "<= 10 ms, latched",
             "electronics/electronics_test", "*EStop*");
@@ -139,13 +147,14 @@ std::vector<CanBenchPart> can_bench_parts(const CanBenchSetting& setting) {
               parts.source() + "/tools/check/surviving_mutants.txt"},
              {},
              10});
-  parts.add({"T22",
-             "both ends and a stopping signal in three threads under ThreadSanitizer",
-             "no data race",
-             CanBenchOutput::kGoogleTest,
-             {"setarch", "-R", parts.tests() + "/threads/both_ends_threads_test"},
-             {},
-             120});
+  parts.add(
+      {"T22",
+       "both ends and a stopping signal in three threads under ThreadSanitizer",
+       "no data race",
+       CanBenchOutput::kGoogleTest,
+       {"setarch", "-R", (setting.build / "tests/tools/threads/both_ends_threads_test").string()},
+       {},
+       120});
   return parts.take();
 }
 
