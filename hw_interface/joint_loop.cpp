@@ -45,6 +45,7 @@ JointLoop::JointLoop(const MachineModel& machine, const JointLoopSettings& setti
     const WheeledLeg& wheeled_leg = machine.legs[leg];
     wheel_joint_[leg] = wheeled_leg.wheel - kNumBaseCoordinates;
     wheel_sign_[leg] = wheeled_leg.wheel_sign;
+    wheel_radius_m_[leg] = wheeled_leg.radius_m;
     if (wheeled_leg.hfe >= 0) joints_[wheeled_leg.hfe - kNumBaseCoordinates].leg = leg;
   }
 }
@@ -119,6 +120,16 @@ void JointLoop::update_stall(const JointCommand* command,
   }
 }
 
+void JointLoop::limit_travel(std::array<double, kNumWheels>& asked,
+                             double pitch_rad) const noexcept {
+  double travel_m_s = 0.0;
+  for (int leg = 0; leg < kNumWheels; ++leg) {
+    travel_m_s += wheel_sign_[leg] * wheel_radius_m_[leg] * asked[leg] / kNumWheels;
+  }
+  const double share = settings_.travel.share_of(travel_m_s / settings_.travel_margin, pitch_rad);
+  for (double& rate : asked) rate *= share;
+}
+
 void JointLoop::update_ramps(const std::array<double, kNumWheels>& asked,
                              bool end_motion) noexcept {
   // The wheels together speed up gently; what one does against another is geometry (curves,
@@ -154,6 +165,7 @@ void JointLoop::update_wheels(const JointCommand* command, const JointMeasuremen
     const double max_rate = joints_[wheel_joint_[leg]].max_rate;
     asked[leg] = std::clamp(command->rate[wheel_joint_[leg]], -max_rate, max_rate);
   }
+  limit_travel(asked, measured.pitch_rad);
   update_ramps(asked, end_motion);
   double droop_rad_s = 0.0, latch_error_rad = 0.0;
   int driven = 0;

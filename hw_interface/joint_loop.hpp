@@ -3,6 +3,7 @@
 #include <array>
 
 #include "hw_interface/load_balance.hpp"
+#include "hw_interface/stopping_speed.hpp"
 #include "models/excavator/machine_model.hpp"
 #include "models/types/machine_io_types.hpp"
 
@@ -20,6 +21,8 @@ struct JointLoopSettings {
   double stall_time_s = 0.5;
   double stall_rate_fraction = 0.2;    ///< of the commanded rate
   double stall_effort_fraction = 0.7;  ///< of the joint's largest effort
+  StoppingSpeed travel;
+  double travel_margin = 0.97;  ///< of it: what passes here is not cut by the electronics
   bool load_balance = true;
   LoadBalanceSettings balance;
 };
@@ -27,6 +30,7 @@ struct JointLoopSettings {
 /// What the sensors say in one control period. Joint order as in MachineModel::joints.
 struct JointMeasurement {
   std::array<double, kMaxJoints> position{}, rate{}, effort{};
+  double pitch_rad = 0.0;  ///< of the base, nose down > 0
 };
 
 /// What goes to the actuators in one control period.
@@ -37,8 +41,9 @@ struct ActuatorCommand {
 
 /// The 100 Hz joint loop on the host, the same for every backend. Per joint:
 ///   rate = feed-forward + gain (target - measured), limited in rate, acceleration and end stops;
-///   all hydraulic rates share the pump's flow; wheels follow a ramp, stop on stall and are latched
-///   at their angle while nothing is asked of them.
+///   all hydraulic rates share the pump's flow; wheels follow a ramp, together no faster than can
+///   be stopped in time on this slope, stop on stall and are latched at their angle while nothing
+///   is asked of them.
 /// Control-rate code: no allocation, nothing thrown after construction.
 class JointLoop {
  public:
@@ -75,6 +80,7 @@ class JointLoop {
   double hydraulic_rate(int joint, const JointCommand* command, double position) const noexcept;
   void share_pump(ActuatorCommand& out) const noexcept;
   void update_stall(const JointCommand* command, const JointMeasurement& measured) noexcept;
+  void limit_travel(std::array<double, kNumWheels>& asked, double pitch_rad) const noexcept;
   void update_ramps(const std::array<double, kNumWheels>& asked, bool end_motion) noexcept;
   void update_wheels(const JointCommand* command, const JointMeasurement& measured,
                      ActuatorCommand& out) noexcept;
@@ -86,7 +92,8 @@ class JointLoop {
   std::array<double, kMaxJoints> previous_rate_{};
 
   std::array<int, kNumWheels> wheel_joint_{};  ///< by Limb
-  std::array<double, kNumWheels> wheel_sign_{}, latched_angle_rad_{}, stall_clock_s_{};
+  std::array<double, kNumWheels> wheel_sign_{}, wheel_radius_m_{}, latched_angle_rad_{},
+      stall_clock_s_{};
   std::array<bool, kNumWheels> latched_{};
   std::array<double, kNumWheels> expected_rate_{};  ///< the ramp after dead time and lag
   double drive_lag_rad_ = 0.0;  ///< how far the wheels, taken together, are behind that

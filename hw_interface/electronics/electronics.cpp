@@ -1,6 +1,7 @@
 #include "hw_interface/electronics/electronics.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace wex::can {
@@ -43,8 +44,10 @@ long ElectronicsCounters::commands_rejected() const noexcept {
 bool Electronics::Stream::in_order(std::uint8_t counter, int silence_ms,
                                    std::int64_t now_ms) noexcept {
   if (now_ms - last_ms > silence_ms) check.reset();
+  const int missing =
+      SequenceCheck::missing_after(static_cast<double>(now_ms - last_ms), period_ms);
   last_ms = now_ms;
-  const SequenceVerdict verdict = check.update(counter);
+  const SequenceVerdict verdict = check.update(counter, missing);
   return verdict != SequenceVerdict::kRepeated && verdict != SequenceVerdict::kWrongSequence &&
          check.trusted();
 }
@@ -90,7 +93,13 @@ Electronics::Electronics(const MachineModel& machine, const SlotMap& slots, Plan
       is_wheel[i] = roles[i] == SlotRole::kWheel;
     }
     zones_.push_back({ZoneController(roles, limits, control),
-                      MachineLimits(limits, is_wheel, settings.limits), Stream{}, ZoneReport{}});
+                      MachineLimits(limits, is_wheel, settings.limits),
+                      Stream{MessageKind::kZoneCommand}, ZoneReport{}});
+  }
+  for (int leg = 0; leg < kNumWheels; ++leg) {
+    const WheeledLeg& wheeled_leg = machine.legs[leg];
+    const std::string& name = machine.joints[wheeled_leg.wheel - kNumBaseCoordinates].name;
+    wheels_[leg] = {slot_of(name), wheeled_leg.wheel_sign * wheeled_leg.radius_m};
   }
   sense();
 }
@@ -260,6 +269,12 @@ void Electronics::follow_automaton(std::int64_t now_ms) noexcept {
 }
 
 void Electronics::receive(std::int64_t now_ms) noexcept {
+  constexpr double kMsPerS = 1e3;
+  const auto period_ms = std::llround(kMsPerS * settings_.zones.period_s);
+  take_all(settings_.lock_step ? now_ms + period_ms : now_ms);
+}
+
+void Electronics::take_all(std::int64_t now_ms) noexcept {
   CanFrame frame;
   while ((receive_status_ = port_->receive(frame)) == SocketStatus::kOk) {
     handle(frame, now_ms);
@@ -279,17 +294,29 @@ void Electronics::sense() noexcept {
   }
 }
 
+double Electronics::wheel_share(std::int64_t now_ms) const noexcept {
+  double travel_m_s = 0.0;
+  for (const Wheel& wheel : wheels_) {
+    const ZoneCommand* command = watchdog_.in_force(wheel.slot.zone, now_ms);
+    if (command == nullptr || !command->active[wheel.slot.index]) continue;
+    travel_m_s += wheel.way_per_rad_m * command->rate[wheel.slot.index] / kNumWheels;
+  }
+  return settings_.travel.share_of(travel_m_s, state_.base[kBasePitch]);
+}
+
 void Electronics::act(std::int64_t now_ms) noexcept {
   const bool enabled = automaton_.mode() == MachineMode::kEnabled;
+  const double share = wheel_share(now_ms);
   for (int z = 0; z < kNumZones; ++z) {
     Zone& zone = zones_[z];
     const ZoneOutput& output = zone.controller.update(
-        enabled ? watchdog_.in_force(z, now_ms) : nullptr, zone.position, zone.rate);
+        enabled ? watchdog_.in_force(z, now_ms) : nullptr, zone.position, zone.rate, share);
     for (int i = 0; i < kMaxZoneJoints; ++i) {
       const int joint = slots_[z][i];
       if (joint < 0) continue;
       input_.spool[joint] = output.spool[i];
       input_.wheel_rate[joint] = output.wheel_rate[i];
+      input_.braked[joint] = output.brake[i];
     }
   }
   input_.motion_released = enabled;
@@ -297,7 +324,7 @@ void Electronics::act(std::int64_t now_ms) noexcept {
 }
 
 void Electronics::tick(std::int64_t now_ms) noexcept {
-  receive(now_ms);
+  take_all(now_ms);
   const SelfCheck check{
       .sensors_valid = state_.sensors_valid,
       .base_pose_valid = state_.base_pose_valid,

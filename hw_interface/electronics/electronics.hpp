@@ -14,6 +14,7 @@
 #include "hw_interface/electronics/zone_controller.hpp"
 #include "hw_interface/socketcan/frame_port.hpp"
 #include "hw_interface/socketcan/protection.hpp"
+#include "hw_interface/stopping_speed.hpp"
 
 namespace wex::can {
 
@@ -25,6 +26,7 @@ struct ElectronicsSettings {
   AutomatonSettings automaton;
   MachineLimitsSettings limits;
   ZoneControllerSettings zones;                            ///< dead_band is taken from the machine
+  StoppingSpeed travel;                                    ///< beyond it all wheels get less
   Eigen::Vector2d map_origin_m = Eigen::Vector2d::Zero();  ///< map frame = plant's frame + this
   double neutral_rate = 5e-3;      ///< rad/s or m/s: a bumpless command asks for no more
   int silence_ms = 100;            ///< after that a counter may start anywhere
@@ -59,7 +61,8 @@ class Electronics {
       const MachineModel& machine, Plant& plant, FramePort& port, RandomSource& random,
       const ElectronicsSettings& settings = {});
 
-  /// Takes everything that has come. now_ms: machine time, never goes back.
+  /// Takes everything that has come. now_ms: machine time, never goes back. In lock step the clock
+  /// stands meanwhile; what comes then counts as of the period that is about to run.
   void receive(std::int64_t now_ms) noexcept;
   /// One period that ends at now_ms; receives first.
   void tick(std::int64_t now_ms) noexcept;
@@ -85,7 +88,9 @@ class Electronics {
 
   /// Counter of one sender's stream; a silence lets it start anew.
   struct Stream {
+    Stream(MessageKind kind) noexcept : period_ms(1e3 * timing_of(kind).period_s) {}
     bool in_order(std::uint8_t counter, int silence_ms, std::int64_t now_ms) noexcept;
+    double period_ms;  ///< 0: sent upon events only
     SequenceCheck check{SequenceCheck::Settings{}};
     std::int64_t last_ms = 0;
   };
@@ -97,6 +102,7 @@ class Electronics {
     std::array<double, kMaxZoneJoints> position{}, rate{};  ///< measured
   };
 
+  void take_all(std::int64_t now_ms) noexcept;
   void handle(const CanFrame& frame, std::int64_t now_ms) noexcept;
   template <typename Message>
   bool take(const CanFrame& frame, Stream& stream, int silence_ms, Message& message,
@@ -108,9 +114,16 @@ class Electronics {
   void reject(int zone) noexcept;
   void follow_automaton(std::int64_t now_ms) noexcept;
   void sense() noexcept;
+  [[nodiscard]] double wheel_share(std::int64_t now_ms) const noexcept;
   void act(std::int64_t now_ms) noexcept;
 
+  struct Wheel {
+    JointSlot slot;
+    double way_per_rad_m = 0.0;  ///< forward > 0
+  };
+
   SlotMap slots_;
+  std::array<Wheel, kNumWheels> wheels_;
   Plant* plant_;
   FramePort* port_;
   ElectronicsSettings settings_;
@@ -118,7 +131,8 @@ class Electronics {
   CommandWatchdog watchdog_;
   FeedbackPublisher publisher_;
   std::vector<Zone> zones_;  ///< kNumZones, never resized
-  Stream heartbeat_, host_stop_, operator_;
+  Stream heartbeat_{MessageKind::kHostHeartbeat}, host_stop_{MessageKind::kHostStop},
+      operator_{MessageKind::kOperatorCommand};
   std::uint32_t session_ = 0, previous_session_ = 0;
   MachineMode last_mode_ = MachineMode::kInit;
   bool chain_open_ = false;

@@ -143,13 +143,14 @@ void FeedbackPublisher::publish(FramePort& port, const Sample& sample) noexcept 
   estop.chain_open = sample.chain_open;
   estop.cause = sample.estop_cause;
   send(port, estop, estop_);
+  // Before all that has no stamp of its own: who listens dates that by these.
+  send_imu(port, sample);
+  send_base_pose(port, sample);
   const bool changed = !(*sample.status == last_status_);
   if (changed || period_ % kPeriodsPerStatus == 0) {
     for (int zone = 0; zone < kNumZones; ++zone) send_zone_status(port, sample, zone);
   }
   last_status_ = *sample.status;
-  send_imu(port, sample);
-  send_base_pose(port, sample);
   if (period_ % kPeriodsPerPressure == 0) {
     for (int zone = 0; zone < kNumZones; ++zone) send_zone_pressure(port, sample, zone);
   }

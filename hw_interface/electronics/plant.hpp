@@ -21,6 +21,7 @@ struct PlantState {
 struct PlantInput {
   std::array<double, kMaxJoints> spool{};       ///< valve opening in [-1, 1]; unused for wheels
   std::array<double, kMaxJoints> wheel_rate{};  ///< drives and their brakes, rad/s; wheels only
+  std::array<bool, kMaxJoints> braked{};  ///< wheels: the brake is closed, no valve delays its rate
   /// False: the load-holding valves shut whatever the spools do (springs, within 50 ms): no flow.
   /// The machine stands on its legs, so nothing here ever lets pressure out of one.
   bool motion_released = false;

@@ -9,7 +9,9 @@ namespace wex::can {
 namespace {
 
 double towards_zero(double value, double step) noexcept {
-  return std::copysign(std::max(0.0, std::abs(value) - step), value);
+  constexpr double kRounding = 1e-12;
+  const double left = std::abs(value) - step;
+  return left > kRounding ? std::copysign(left, value) : 0.0;
 }
 
 }  // namespace
@@ -50,12 +52,13 @@ void ZoneController::update_wheel(int i, bool active, double asked, double posit
 
 const ZoneOutput& ZoneController::update(const ZoneCommand* command,
                                          const std::array<double, kMaxZoneJoints>& position,
-                                         const std::array<double, kMaxZoneJoints>& rate) noexcept {
+                                         const std::array<double, kMaxZoneJoints>& rate,
+                                         double wheel_share) noexcept {
   for (int i = 0; i < kMaxZoneJoints; ++i) {
     const bool active = command != nullptr && command->active[i];
     const double asked = active ? command->rate[i] : 0.0;
     if (roles_[i] == SlotRole::kWheel) {
-      update_wheel(i, active, asked, position[i], rate[i]);
+      update_wheel(i, active, wheel_share * asked, position[i], rate[i]);
     } else if (roles_[i] != SlotRole::kUnused) {
       update_spool(i, active, asked, rate[i]);
     }

@@ -12,10 +12,10 @@ struct ZoneControllerSettings {
   double dead_band = 0.05;           ///< of full spool travel, undone by its inverse
   double rest_rate_fraction = 2e-3;  ///< of the rate limit: slower than that is "closed"
   double spool_ramp_s = 0.05;        ///< from full to neutral, when a joint must hold
-  double wheel_stop_rad_s2 = 10.0;   ///< when it must hold: 6 m/s^2, what the relief valves give
-  double brake_below_rad_s = 0.06;   ///< a parking brake closes below this (3.6 cm/s at the tyre)
-  double wheel_rest_rad_s = 1e-3;    ///< less than this is asked of a wheel: it may be latched
-  double brake_gain_1_s = 2.0;       ///< how a latched wheel is kept at its angle
+  double wheel_stop_rad_s2 = 30.0;  ///< when it must hold: more than the motors' relief valves give
+  double brake_below_rad_s = 0.06;  ///< a parking brake closes below this (3.6 cm/s at the tyre)
+  double wheel_rest_rad_s = 1e-3;   ///< less than this is asked of a wheel: it may be latched
+  double brake_gain_1_s = 20.0;     ///< how a latched wheel is kept at its angle
   double swing_standstill_rad_s = 0.01;
 };
 
@@ -42,9 +42,11 @@ class ZoneController {
                  const ZoneControllerSettings& settings = {}) noexcept;
 
   /// command == nullptr: every joint holds. Inactive joints hold. Positions and rates as measured.
+  /// wheel_share: of what is asked of the wheels, so much is given.
   const ZoneOutput& update(const ZoneCommand* command,
                            const std::array<double, kMaxZoneJoints>& position,
-                           const std::array<double, kMaxZoneJoints>& rate) noexcept;
+                           const std::array<double, kMaxZoneJoints>& rate,
+                           double wheel_share = 1.0) noexcept;
   /// The spools are neutral (as of the last update).
   [[nodiscard]] bool neutral() const noexcept;
   /// Parking brakes and swing brake, of those that the zone has.

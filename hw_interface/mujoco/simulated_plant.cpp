@@ -23,6 +23,12 @@ constexpr double kTimeTolerance_s = 1e-9;
 constexpr double kRadToDeg = 180.0 / std::numbers::pi;
 constexpr double kBrakeGain_1_s = 2.0;  ///< keeps the wheels at their angle while settling
 
+// A machine parked on a slope must not creep: friction ten times as stiff as the model asks for,
+// and a solver that does not stop before it is there (at its default of 1e-8 it let the wheels work
+// against each other at 0.1 mm/s).
+constexpr double kImpedanceRatio = 100.0;
+constexpr double kSolverTolerance = 1e-12;
+
 /// Machine and terrain as one compiled model.
 Result<MujocoModel> compile_scene(const MachineModel& machine, const TerrainMap& terrain,
                                   const SimulationSettings& settings) {
@@ -34,6 +40,8 @@ Result<MujocoModel> compile_scene(const MachineModel& machine, const TerrainMap&
   auto model = compile(spec->get());
   if (!model) return model;
   mjModel& m = **model;
+  m.opt.impratio = kImpedanceRatio;
+  m.opt.tolerance = kSolverTolerance;
   // A state that is not finite is a fault to report, not something to restart from.
   m.opt.disableflags |= mjDSBL_AUTORESET;
   for (int g = 0; g < m.ngeom; ++g) {
@@ -47,7 +55,8 @@ Result<MujocoModel> compile_scene(const MachineModel& machine, const TerrainMap&
 struct SimulatedPlant::Impl {
   struct Address {
     int qpos = 0, dof = 0, act = -1;
-    double relief = 0.0;  ///< how far the oil column can be pressed before its valve opens
+    double relief = 0.0;     ///< how far the oil column can be pressed before its valve opens
+    double damping_s = 0.0;  ///< damping of the oil column over its stiffness
   };
 
   Impl(const MachineModel& machine_in, const SimulationSettings& settings_in, MujocoModel model_in)
@@ -68,7 +77,9 @@ struct SimulatedPlant::Impl {
       address.qpos = model->jnt_qposadr[id];
       address.dof = model->jnt_dofadr[id];
       address.act = model->actuator_actadr[i];  // actuators stand in joint order
-      if (address.act >= 0) address.relief = joint.max_effort / joint.hold_stiffness;
+      if (address.act < 0) continue;
+      address.relief = joint.max_effort / joint.hold_stiffness;
+      address.damping_s = -model->actuator_biasprm[mjNBIAS * i + 2] / joint.hold_stiffness;
     }
     const Result<std::vector<std::string>> names = scalar_joint_names(machine);
     for (const std::string& name : names.value()) {
@@ -94,19 +105,22 @@ struct SimulatedPlant::Impl {
 
   /// One control period: valves, physics.
   void advance(const std::array<double, kMaxJoints>& spool,
-               const std::array<double, kMaxJoints>& wheel_rate, bool released) noexcept {
+               const std::array<double, kMaxJoints>& wheel_rate, bool released,
+               const std::array<bool, kMaxJoints>& braked) noexcept {
     if (broken) {
       data->time += settings.control_period_s;
       return;
     }
-    const std::array<double, kMaxJoints> rate = valves.update(spool, wheel_rate, released);
+    const std::array<double, kMaxJoints> rate = valves.update(spool, wheel_rate, released, braked);
     for (int i = 0; i < machine.num_joints(); ++i) {
       data->ctrl[i] = rate[i];
       const Address& address = addresses[i];
       if (address.act < 0) continue;
-      const double position = data->qpos[address.qpos];
+      // The valve opens at the column's force, that is stiffness and damping together: a moving
+      // joint is ahead of its position by what the damping takes.
+      const double neutral = data->qpos[address.qpos] + address.damping_s * data->qvel[address.dof];
       data->act[address.act] =
-          std::clamp(data->act[address.act], position - address.relief, position + address.relief);
+          std::clamp(data->act[address.act], neutral - address.relief, neutral + address.relief);
     }
     for (int step = 0; step < steps_per_period; ++step) {
       mj_step(model.get(), data.get());
@@ -149,11 +163,11 @@ Result<std::unique_ptr<SimulatedPlant>> SimulatedPlant::create(const MachineMode
 }
 
 void SimulatedPlant::tick(const ActuatorCommand& command) noexcept {
-  impl_->advance(command.spool, command.rate, true);
+  impl_->advance(command.spool, command.rate, true, {});
 }
 
 void SimulatedPlant::act(const can::PlantInput& input) noexcept {
-  impl_->advance(input.spool, input.wheel_rate, input.motion_released);
+  impl_->advance(input.spool, input.wheel_rate, input.motion_released, input.braked);
 }
 
 Result<void> SimulatedPlant::settle() {
@@ -187,6 +201,7 @@ JointMeasurement SimulatedPlant::measure() const noexcept {
     measured.rate[i] = impl_->data->qvel[impl_->addresses[i].dof];
     measured.effort[i] = impl_->data->actuator_force[i];
   }
+  measured.pitch_rad = base()[kBasePitch];
   return measured;
 }
 

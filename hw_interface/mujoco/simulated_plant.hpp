@@ -22,7 +22,7 @@ struct SimulationSettings {
 /// The truth about contacts and motion, for reports only: no controller may read it.
 struct GroundTruth {
   double t_s = 0.0;
-  BaseCoordinates base{};
+  BaseCoordinates base = BaseCoordinates::Zero();
   double base_vertical_rate_m_s = 0.0;
   std::array<double, kNumWheels> wheel_load_n{};         ///< vertical, mean over the last 10 ms
   std::array<double, kNumWheels> wheel_penetration_m{};  ///< disc below the ground, > 0 is into it

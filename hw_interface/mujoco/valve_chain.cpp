@@ -24,14 +24,14 @@ ValveChain::ValveChain(const MachineModel& machine, double period_s, double dead
   }
 }
 
-std::array<double, kMaxJoints> ValveChain::update(const std::array<double, kMaxJoints>& spool,
-                                                  const std::array<double, kMaxJoints>& wheel_rate,
-                                                  bool released) noexcept {
+std::array<double, kMaxJoints> ValveChain::update(
+    const std::array<double, kMaxJoints>& spool, const std::array<double, kMaxJoints>& wheel_rate,
+    bool released, const std::array<bool, kMaxJoints>& braked) noexcept {
   std::array<double, kMaxJoints> rate{};
   constexpr int kRing = kMaxDeadTimePeriods + 1;
   for (int i = 0; i < num_joints_; ++i) {
     Valve& valve = valves_[i];
-    if (!released) {
+    if (!released || (valve.wheel && braked[i])) {
       const double slower = std::abs(valve.rate) - valve.max_rate * period_s_ / kShutTime_s;
       valve.rate = valve.wheel ? wheel_rate[i] : std::copysign(std::max(0.0, slower), valve.rate);
       history_[i].fill(valve.wheel ? wheel_rate[i] : 0.0);

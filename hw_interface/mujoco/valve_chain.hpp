@@ -20,9 +20,11 @@ class ValveChain {
   ///   released  false: pilot pressure is vented and springs shut the valves, within 50 ms and
   ///             whatever was on its way; the brake valves at the wheels' motors follow their rate
   ///             without the pilot's delay
+  ///   braked    wheels: so does a closed parking brake
   std::array<double, kMaxJoints> update(const std::array<double, kMaxJoints>& spool,
                                         const std::array<double, kMaxJoints>& wheel_rate,
-                                        bool released = true) noexcept;
+                                        bool released = true,
+                                        const std::array<bool, kMaxJoints>& braked = {}) noexcept;
 
  private:
   static constexpr int kMaxDeadTimePeriods = 127;

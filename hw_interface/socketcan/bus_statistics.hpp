@@ -50,6 +50,7 @@ struct BusStatistics {
   long stalls = 0, purges = 0, reopens = 0;
   long holds = 0;  ///< within a session that nobody asked for: false ones on a healthy bus
   long faults = 0, rates_limited = 0, refused_by_codec = 0;
+  double busy_s = 0.0;        ///< time that all frames occupied the bus, likewise an estimate
   double bus_load = 0.0;      ///< mean share of the time; an estimate, worst case of stuff bits
   double max_bus_load = 0.0;  ///< busiest second
   double max_feedback_age_s = 0.0, max_status_age_s = 0.0;  ///< within a session

@@ -86,12 +86,14 @@ CanSocket::CanSocket(int descriptor, std::string interface_name) noexcept
 
 CanSocket::CanSocket(CanSocket&& other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)),
+      gone_(other.gone_),
       interface_name_(std::move(other.interface_name_)),
       dropped_(other.dropped_),
       dropped_before_(other.dropped_before_) {}
 
 CanSocket& CanSocket::operator=(CanSocket&& other) noexcept {
   std::swap(descriptor_, other.descriptor_);
+  std::swap(gone_, other.gone_);
   std::swap(interface_name_, other.interface_name_);
   std::swap(dropped_, other.dropped_);
   std::swap(dropped_before_, other.dropped_before_);
@@ -154,7 +156,11 @@ SocketStatus CanSocket::send(const CanFrame& frame) noexcept {
     int pending = 0;
     socklen_t size = sizeof(pending);
     ::getsockopt(descriptor_, SOL_SOCKET, SO_ERROR, &pending, &size);
-    if (error_number != ENETDOWN || attempt == 1) return status_of(error_number);
+    if (error_number != ENETDOWN || attempt == 1) {
+      const SocketStatus status = status_of(error_number);
+      gone_ = gone_ || status == SocketStatus::kGone;
+      return status;
+    }
   }
   return SocketStatus::kInterfaceDown;
 }
@@ -170,7 +176,10 @@ SocketStatus CanSocket::receive(CanFrame& frame) noexcept {
   message.msg_control = control;
   message.msg_controllen = sizeof(control);
   const ssize_t bytes = ::recvmsg(descriptor_, &message, MSG_DONTWAIT);
-  if (bytes < 0) return status_of(errno);
+  if (bytes < 0) {
+    const SocketStatus status = status_of(errno);
+    return status == SocketStatus::kWouldBlock && gone_ ? SocketStatus::kGone : status;
+  }
   if (bytes != CAN_MTU && bytes != CANFD_MTU) return SocketStatus::kWouldBlock;
 
   frame = CanFrame{};
@@ -210,6 +219,7 @@ SocketStatus CanSocket::wait_readable(double timeout_s) noexcept {
 SocketStatus CanSocket::reopen() noexcept {
   if (descriptor_ >= 0) ::close(descriptor_);
   dropped_before_ = dropped_;
+  gone_ = false;
   descriptor_ = open_descriptor(interface_name_);
   return descriptor_ >= 0 ? SocketStatus::kOk : SocketStatus::kGone;
 }

@@ -42,6 +42,7 @@ class CanSocket final : public FramePort {
   SocketStatus status_of(int error_number) noexcept;
 
   int descriptor_ = -1;
+  bool gone_ = false;  ///< the kernel says so once only, to whichever call comes first
   std::string interface_name_;
   std::uint32_t dropped_ = 0;         ///< of all sockets opened so far
   std::uint32_t dropped_before_ = 0;  ///< of those closed again

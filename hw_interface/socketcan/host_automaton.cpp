@@ -174,6 +174,8 @@ const char* describe(HostCause cause) noexcept {
       return "the machine reports a fault";
     case HostCause::kEStopOpen:
       return "the e-stop chain is open";
+    case HostCause::kOperatorStop:
+      return "an operator has stopped the machine";
     case HostCause::kOtherDbc:
       break;
   }
@@ -186,7 +188,9 @@ HostState advance(const HostState& before, const HostInputs& in, const HostTimes
 
   const bool estop = in.estop_open || in.mode == MachineMode::kEStop;
   if (estop && state.phase != HostPhase::kEStop) {
-    return enter(state, HostPhase::kEStop, HostCause::kEStopOpen, in.now_s);
+    const bool by_operator = in.operator_stopped && !in.estop_open;
+    return enter(state, HostPhase::kEStop,
+                 by_operator ? HostCause::kOperatorStop : HostCause::kEStopOpen, in.now_s);
   }
   const HostCause fault = fault_cause(state, in, times);
   const bool latched = state.phase == HostPhase::kFault || state.phase == HostPhase::kEStop;

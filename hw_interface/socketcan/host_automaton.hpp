@@ -38,7 +38,8 @@ enum class HostCause : std::uint8_t {
   kMasquerade,    ///< somebody else sends the host's frames
   kMachineFault,  ///< the machine reports a fault
   kEStopOpen,
-  kOtherDbc  ///< the machine was built from another wex.dbc
+  kOtherDbc,     ///< the machine was built from another wex.dbc
+  kOperatorStop  ///< emergency stop by a person's frame; the chain itself is closed
 };
 /// One clause for a person.
 [[nodiscard]] const char* describe(HostCause cause) noexcept;
@@ -64,7 +65,8 @@ struct HostInputs {
   MachineMode mode = MachineMode::kInit;
   std::uint32_t session = 0, challenge = 0;  ///< as all zones report
   bool estop_open = false;
-  bool stop = false;  ///< stop() is in force
+  bool operator_stopped = false;  ///< as any zone reports
+  bool stop = false;              ///< stop() is in force
   bool bus_stalled = false;
   bool bus_off_reported = false;  ///< by an error frame, which any local process can forge
   bool overflowed = false;        ///< twice within a second

@@ -49,7 +49,7 @@ Result<HostFeedback> HostFeedback::create(const MachineModel& machine,
   WEX_EXPECTS(machine.num_joints() <= kMaxJoints && settings.max_crc_errors <= kMaxCrcErrors);
   for (const Joint& joint : machine.joints) {
     const JointSlot slot = slot_of(joint.name);
-    if (slot.zone < 0 || slot.index < 0) {
+    if (slot.zone < 0) {
       return fail(ErrorCode::kBadInput, "the joint '" + joint.name + "' of the machine '" +
                                             machine.name +
                                             "' has no place on the bus: no signal of wex.dbc has "
@@ -101,12 +101,11 @@ void HostFeedback::observe_stamp(std::uint32_t stamp_ms, std::int64_t now_ns) no
   } else if (first) {
     // What came before the first stamp was dated by a clock that did not know the machine's time.
     const double now = clock_.now_s(now_ns);
-    for_each_receiver([now](Receiver& receiver) { receiver.heard_s = now; });
+    for_each_receiver([now](Receiver& receiver) { receiver.heard_s = receiver.checked_s = now; });
   }
 }
 
 FrameVerdict HostFeedback::refuse(CodecError error, std::int64_t now_ns) noexcept {
-  if (error == CodecError::kUnknownId) return FrameVerdict::kUnknown;
   if (error != CodecError::kBadCrc) return FrameVerdict::kMalformed;
   const double now = clock_.now_s(now_ns);
   const long before_window = crc_errors_ - settings_.max_crc_errors;
@@ -166,7 +165,12 @@ FrameVerdict HostFeedback::receive(const CanFrame& frame, std::int64_t now_ns,
   if (latest.heard && clock_.now_s(now_ns) - latest.heard_s > settings_.forget_sender_after_s) {
     latest.sequence.reset();
   }
-  const SequenceVerdict verdict = latest.sequence.update(meta->counter);
+  constexpr double kMsPerS = 1e3;
+  const double now = clock_.now_s(now_ns);
+  const int missing = SequenceCheck::missing_after(kMsPerS * (now - latest.checked_s),
+                                                   kMsPerS * timing_of(kind_of(frame)).period_s);
+  latest.checked_s = now;
+  const SequenceVerdict verdict = latest.sequence.update(meta->counter, missing);
   if (verdict == SequenceVerdict::kRepeated) return FrameVerdict::kRepeated;
   if (!latest.sequence.trusted()) return FrameVerdict::kWrongSequence;
   apply(message, now_ns, latest);
@@ -220,6 +224,7 @@ FrameVerdict HostFeedback::take(const CanFrame& frame, std::int64_t now_ns) noex
 
 JointMeasurement HostFeedback::measurement() const noexcept {
   JointMeasurement measured;
+  measured.pitch_rad = pose_.value.pitch_rad;
   for (int i = 0; i < num_joints_; ++i) {
     const auto [zone, index] = slots_[i];
     const ZonePressure& pressure = pressure_[zone].value;
@@ -327,6 +332,12 @@ std::uint32_t HostFeedback::challenge() const noexcept {
 bool HostFeedback::dbc_matches() const noexcept {
   return std::all_of(status_.begin(), status_.end(), [](const auto& status) {
     return status.heard && status.value.dbc_hash == dbc_hash();
+  });
+}
+
+bool HostFeedback::operator_stopped() const noexcept {
+  return std::any_of(status_.begin(), status_.end(), [](const auto& status) {
+    return (status.value.fault_bits & kReportsOperatorStop) != 0;
   });
 }
 

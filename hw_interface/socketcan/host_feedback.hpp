@@ -19,6 +19,9 @@ struct FeedbackSettings {
   double forget_sender_after_s = 1.0;  ///< silence after which a counter may start anywhere
 };
 
+/// Set in ZoneStatus::fault_bits after a person's stop over the bus, until the reset.
+inline constexpr std::uint16_t kReportsOperatorStop = 1 << 6;
+
 /// What became of a received frame.
 enum class FrameVerdict : std::uint8_t {
   kUsed,
@@ -73,6 +76,8 @@ class HostFeedback {
   [[nodiscard]] const ZoneStatus& status(int zone) const noexcept { return status_[zone].value; }
   [[nodiscard]] bool dbc_matches() const noexcept;
   [[nodiscard]] bool estop_open() const noexcept { return estop_.value.chain_open; }
+  /// Any zone reports that a person stopped the machine over the bus.
+  [[nodiscard]] bool operator_stopped() const noexcept;
   [[nodiscard]] JointSlot slot(int joint) const noexcept { return slots_[joint]; }
 
   // Events since the last call of the same function.
@@ -89,7 +94,8 @@ class HostFeedback {
   struct Receiver {
     SequenceCheck sequence{SequenceCheck::Settings{}};
     bool heard = false;
-    double heard_s = 0.0;  ///< machine time of the last frame in order
+    double heard_s = 0.0;    ///< machine time of the last frame in order
+    double checked_s = 0.0;  ///< likewise of the last one whose counter was looked at
   };
   template <typename Message>
   struct Latest : Receiver {

@@ -45,10 +45,10 @@ void HostLink::on_bus_time(const CanFrame& frame, std::int64_t now_ns) noexcept 
     second_begin_ns_ = now_ns;
   }
   const double time_s = bus_time_s(frame);
-  busy_s_ += time_s;
+  statistics_.busy_s += time_s;
   busy_this_second_s_ += time_s;
   if (now_ns > first_ns_) {
-    statistics_.bus_load = busy_s_ / (1e-9 * static_cast<double>(now_ns - first_ns_));
+    statistics_.bus_load = statistics_.busy_s / (1e-9 * static_cast<double>(now_ns - first_ns_));
   }
 }
 
@@ -115,26 +115,30 @@ void HostLink::on_lost(std::int64_t now_ns) noexcept {
   backoff_s_ = std::min(2.0 * backoff_s_, settings_.max_reopen_after_s);
 }
 
-void HostLink::receive(HostFeedback& feedback, std::int64_t now_ns) noexcept {
-  CanFrame frame;
-  if (!usable_) {
-    // Nothing counts before the port is opened anew; left unread, it would end every wait at once.
-    for (int i = 0; i < kMaxFramesAtOnce && port_->receive(frame) == SocketStatus::kOk; ++i) {
-    }
-    return;
+bool HostLink::collect() noexcept {
+  while (collected_ < kBatch) {
+    collect_status_ = port_->receive(batch_[collected_]);
+    if (collect_status_ != SocketStatus::kOk) return false;
+    ++collected_;
   }
-  for (int i = 0; i < kMaxFramesAtOnce; ++i) {
-    const SocketStatus status = port_->receive(frame);
-    if (status == SocketStatus::kWouldBlock) break;
-    if (status != SocketStatus::kOk) {
-      on_lost(now_ns);
-      return;
-    }
-    on_received(frame, feedback, now_ns);
-    if (!frame.error) {  // the bus is back
+  return true;
+}
+
+void HostLink::receive(HostFeedback& feedback, std::int64_t now_ns) noexcept {
+  const std::size_t count = std::exchange(collected_, 0);
+  const SocketStatus status = std::exchange(collect_status_, SocketStatus::kWouldBlock);
+  // Nothing counts before the port is opened anew; left unread, it would end every wait at once.
+  if (!usable_) return;
+  for (std::size_t i = 0; i < count; ++i) {
+    on_received(batch_[i], feedback, now_ns);
+    if (!batch_[i].error) {  // the bus is back
       lost_ = false;
       backoff_s_ = settings_.reopen_after_s;
     }
+  }
+  if (status != SocketStatus::kOk && status != SocketStatus::kWouldBlock) {
+    on_lost(now_ns);
+    return;
   }
   const std::uint32_t dropped = port_->dropped();
   if (dropped != dropped_) {

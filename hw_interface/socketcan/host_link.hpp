@@ -31,7 +31,10 @@ class HostLink {
   /// The port must live longer.
   HostLink(FramePort& port, const LinkSettings& settings);
 
-  /// Takes all that has come.
+  /// Takes a batch of frames off the port; true: there may be more.
+  bool collect() noexcept;
+  /// Uses what was collected. The clock is read after collecting: a frame dated before it came
+  /// would make the machine's clock seem ahead, and all its feedback old for minutes.
   void receive(HostFeedback& feedback, std::int64_t now_ns) noexcept;
   /// Sends what is in the mailbox; what is not taken waits for a newer value or the next call.
   void send(std::int64_t now_ns) noexcept;
@@ -59,7 +62,7 @@ class HostLink {
 
  private:
   static constexpr std::int64_t kNever_ns = -1'000'000'000'000'000;
-  static constexpr int kMaxFramesAtOnce = 20'000;  ///< more than the receive buffer holds
+  static constexpr std::size_t kBatch = 64;
 
   void on_received(const CanFrame& frame, HostFeedback& feedback, std::int64_t now_ns) noexcept;
   void on_status(const HostFeedback& feedback, int zone, std::int64_t now_ns) noexcept;
@@ -77,6 +80,10 @@ class HostLink {
   FrameRecorder recorder_;
   std::int64_t realtime_offset_ns_ = 0;  ///< taken once: logs do not jump with the wall clock
 
+  std::array<CanFrame, kBatch> batch_{};
+  std::size_t collected_ = 0;
+  SocketStatus collect_status_ = SocketStatus::kWouldBlock;
+
   bool usable_ = true, lost_ = false, lost_event_ = false, blocked_ = false;
   int blocked_cycles_ = 0, purges_in_a_row_ = 0;
   std::int64_t reopen_at_ns_ = 0, purged_ns_ = kNever_ns;
@@ -87,7 +94,7 @@ class HostLink {
 
   std::int64_t first_ns_ = 0, second_begin_ns_ = 0;
   bool first_ = true;
-  double busy_s_ = 0.0, busy_this_second_s_ = 0.0;
+  double busy_this_second_s_ = 0.0;
   std::array<std::array<std::int64_t, 256>, kNumZones> sent_ns_{};  ///< by counter
   std::array<int, kNumZones> last_reported_{};
 };

@@ -56,6 +56,7 @@ HostInputs HostSession::inputs() noexcept {
   in.session = feedback_.session();
   in.challenge = feedback_.challenge();
   in.estop_open = feedback_.estop_open();
+  in.operator_stopped = feedback_.operator_stopped();
   in.stop = stopped_;
   in.bus_stalled = link_.stalled();
   in.bus_off_reported = link_.bus_off_reported(now_ns_);

@@ -31,9 +31,11 @@ class HostSession {
   HostSession(FramePort& port, const MachineModel& machine, HostFeedback feedback,
               const HostSettings& settings);
 
-  /// Takes what has come.
+  /// Takes a batch of frames off the port; true: there may be more.
+  bool collect() noexcept { return link_.collect(); }
+  /// Uses what was collected; now_ns is read after collecting (HostLink).
   void receive(std::int64_t now_ns) noexcept;
-  /// Reads, decides, sends: once per period of machine time.
+  /// Uses what was collected, decides, sends: once per period of machine time.
   void cycle(std::int64_t now_ns) noexcept;
   /// Lets a machine in lock step run until its clock shows this.
   void send_lock_step(std::uint32_t until_ms) noexcept;

@@ -1,6 +1,8 @@
 #include "hw_interface/socketcan/protection.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace wex::can {
 namespace {
@@ -42,12 +44,20 @@ std::uint8_t crc8(std::span<const std::uint8_t> bytes) noexcept {
   return crc ^ 0xFF;
 }
 
-SequenceVerdict SequenceCheck::update(std::uint8_t counter) noexcept {
-  last_verdict_ = judge(counter);
+SequenceVerdict SequenceCheck::update(std::uint8_t counter, int missing) noexcept {
+  last_verdict_ = judge(counter, missing);
   return last_verdict_;
 }
 
-SequenceVerdict SequenceCheck::judge(std::uint8_t counter) noexcept {
+int SequenceCheck::missing_after(double elapsed_ms, double period_ms) noexcept {
+  constexpr double kTolerance_ms = 0.5;  // stamps are whole milliseconds
+  constexpr double kMany = 255.0;        // of more, a counter knows nothing
+  if (!(elapsed_ms > 0.0 && period_ms > 0.0)) return 0;
+  const double due = std::floor(std::min(kMany, (elapsed_ms + kTolerance_ms) / period_ms));
+  return std::max(0, static_cast<int>(due) - 1);
+}
+
+SequenceVerdict SequenceCheck::judge(std::uint8_t counter, int missing) noexcept {
   const int delta = (counter - last_ + settings_.modulus) % settings_.modulus;
   last_ = counter;
   if (!seen_) {
@@ -55,7 +65,10 @@ SequenceVerdict SequenceCheck::judge(std::uint8_t counter) noexcept {
     return SequenceVerdict::kFirst;
   }
   if (delta == 0) return SequenceVerdict::kRepeated;
-  if (delta > settings_.max_delta) {
+  // Never more than half of the circle: behind it are the old ones.
+  const int allowed = std::min(settings_.max_delta + std::max(0, missing),
+                               std::max(settings_.max_delta, settings_.modulus / 2 - 1));
+  if (delta > allowed) {
     good_needed_ = settings_.good_to_recover;
     return SequenceVerdict::kWrongSequence;
   }

@@ -17,6 +17,8 @@ enum class SequenceVerdict : std::uint8_t { kFirst, kOk, kRepeated, kLostSome, k
 /// Receiver's side of the counter: delta 0 is a repetition (discarded, does not refresh age),
 /// 1..max_delta is good, more is a wrong sequence that needs good_to_recover good frames in a row;
 /// the last of them is trusted. Feed it frames with a good CRC only.
+/// Frames that were due and did not come widen what is good by one each (as AUTOSAR's profiles 1
+/// and 2 do): a jump that time explains is a loss, which ages judge; one that it does not is wrong.
 class SequenceCheck {
  public:
   struct Settings {
@@ -25,17 +27,20 @@ class SequenceCheck {
     int good_to_recover = 3;
   };
   explicit SequenceCheck(const Settings& settings) noexcept : settings_(settings) {}
-  SequenceVerdict update(std::uint8_t counter) noexcept;
+  /// missing: frames that were due since the one before and did not come.
+  SequenceVerdict update(std::uint8_t counter, int missing = 0) noexcept;
   /// True when the content of the frame just checked may be used.
   [[nodiscard]] bool trusted() const noexcept {
     return seen_ && good_needed_ == 0 && last_verdict_ != SequenceVerdict::kRepeated;
   }
   [[nodiscard]] long lost_frames() const noexcept { return lost_; }
+  /// Frames of this period that were due in `elapsed_ms` since the last one and did not come.
+  [[nodiscard]] static int missing_after(double elapsed_ms, double period_ms) noexcept;
   /// As new, for a new session or after a time-out; the count of lost frames goes on.
   void reset() noexcept;
 
  private:
-  SequenceVerdict judge(std::uint8_t counter) noexcept;
+  SequenceVerdict judge(std::uint8_t counter, int missing) noexcept;
 
   Settings settings_;
   bool seen_ = false;

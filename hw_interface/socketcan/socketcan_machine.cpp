@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kTimeTolerance_s = 1e-6;
 constexpr double kShortWait_s = 0.002;
+constexpr int kMaxBatches = 400;         ///< more than the receive buffer holds
 constexpr double kHandshakeSteps = 3.0;  ///< of the automaton's patience, with a margin
 
 double seconds(std::int64_t duration_ns) noexcept {
@@ -30,8 +31,12 @@ struct SocketCanMachine::Impl {
         host(port, machine, std::move(feedback), settings.host) {}
 
   void receive() noexcept {
-    now_ns = clock.now_ns();
-    host.receive(now_ns);
+    bool more = true;
+    for (int batch = 0; more && batch < kMaxBatches; ++batch) {
+      more = host.collect();
+      now_ns = clock.now_ns();
+      host.receive(now_ns);
+    }
   }
   double now_s() const noexcept { return host.now_s(); }
   bool in_lock_step() const noexcept {
@@ -71,7 +76,8 @@ struct SocketCanMachine::Impl {
   void advance_lock_step(double t_s) noexcept {
     const auto period_ms = static_cast<std::uint32_t>(std::lround(1e3 * settings.host.period_s));
     while (in_lock_step() && now_s() < t_s - kTimeTolerance_s) {
-      host.cycle(clock.now_ns());
+      receive();
+      host.cycle(now_ns);
       const std::uint32_t here_ms = host.feedback().clock().newest_stamp_ms();
       lock_step_once((here_ms / period_ms + 1) * period_ms);
     }

@@ -33,10 +33,11 @@ struct JointCommand {
 
 /// What is known of the machine at `t_s` (machine time). Plain value, no allocation.
 struct MachineState {
-  double t_s = 0.0;                             ///< time the values are of
-  double age_s = 0.0;                           ///< how old they were when read
-  BaseCoordinates base{};                       ///< in the local world frame; yaw unwrapped
-  Eigen::Matrix<double, 6, 1> base_velocity{};  ///< linear, angular; world frame, m/s and rad/s
+  double t_s = 0.0;                                ///< time the values are of
+  double age_s = 0.0;                              ///< how old they were when read
+  BaseCoordinates base = BaseCoordinates::Zero();  ///< in the local world frame; yaw unwrapped
+  /// Linear, angular; world frame, m/s and rad/s.
+  Eigen::Matrix<double, 6, 1> base_velocity = Eigen::Matrix<double, 6, 1>::Zero();
   int num_joints = 0;
   std::array<double, kMaxJoints> position{};     ///< rad or m; wheels unwrapped
   std::array<double, kMaxJoints> rate{};         ///< rad/s or m/s

@@ -12,6 +12,7 @@
 #include "hw_interface/socketcan/codec.hpp"
 #include "models/terrain/raster_io.hpp"
 #include "models/terrain/synthetic.hpp"
+#include "tests/support/machine_log_file.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/scratch_folder.hpp"
 
@@ -19,61 +20,9 @@ namespace wex::can {
 namespace {
 
 namespace fs = std::filesystem;
+using test::MachineLogFile;
 using test::Process;
 using test::wait_for;
-
-/// The machine's own log, by column.
-class MachineLog {
- public:
-  explicit MachineLog(const fs::path& file) {
-    std::ifstream stream(file);
-    std::string line, cell;
-    std::getline(stream, line);
-    std::vector<std::string> names;
-    for (std::stringstream cells(line); std::getline(cells, cell, ',');) names.push_back(cell);
-    while (std::getline(stream, line)) {
-      std::stringstream cells(line);
-      for (const std::string& name : names) {
-        if (std::getline(cells, cell, ',')) columns_[name].push_back(cell);
-      }
-    }
-  }
-  [[nodiscard]] std::size_t size() const { return columns_.at("t").size(); }
-  [[nodiscard]] const std::string& text(const char* column, std::size_t row) const {
-    return columns_.at(column)[row];
-  }
-  [[nodiscard]] double number(const char* column, std::size_t row) const {
-    return std::stod(text(column, row));
-  }
-  [[nodiscard]] bool ever(const std::string& mode) const {
-    const auto& modes = columns_.at("mode");
-    return std::find(modes.begin(), modes.end(), mode) != modes.end();
-  }
-  /// Row of the last command that was accepted before `end`; 0 if there was none.
-  [[nodiscard]] std::size_t last_accepted(std::size_t end) const {
-    std::size_t row = 0;
-    for (std::size_t i = 1; i < end; ++i) {
-      if (text("accepted", i) != text("accepted", i - 1)) row = i;
-    }
-    return row;
-  }
-  /// First row in a mode; size() if there is none.
-  [[nodiscard]] std::size_t first(const std::string& mode) const {
-    const auto& modes = columns_.at("mode");
-    return std::find(modes.begin(), modes.end(), mode) - modes.begin();
-  }
-  /// Machine time from one row to the last one before `end` where a column is not 0 [ms].
-  [[nodiscard]] double ms_until_zero(const char* column, std::size_t from, std::size_t end) const {
-    double last_s = number("t", from);
-    for (std::size_t i = from; i < end; ++i) {
-      if (text(column, i) != "0") last_s = number("t", i);
-    }
-    return 1e3 * (last_s - number("t", from));
-  }
-
- private:
-  std::map<std::string, std::vector<std::string>> columns_;
-};
 
 class CanRun : public ::testing::Test {
  protected:
@@ -92,11 +41,11 @@ class CanRun : public ::testing::Test {
 
   fs::path map() const { return folder_ / "map.asc"; }
   void start_machine() {
-    machine_.emplace(
-        WEX_PROGRAM,
-        std::vector<std::string>{"machine", map().string(), "--can", "vcan0", "--start", "8,8,0",
-                                 "--lock-step", "--log", (folder_ / "machine.csv").string()},
-        folder_ / "machine.txt");
+    machine_.emplace(WEX_PROGRAM,
+                     std::vector<std::string>{"machine", map().string(), "--can", "vcan0",
+                                              "--start", "8,8,0", "--lock-step", "--patience", "2",
+                                              "--log", (folder_ / "machine.csv").string()},
+                     folder_ / "machine.txt");
     ASSERT_TRUE(wait_for(20.0, [&] { return heard(MessageKind::kZoneStatus); }))
         << machine_->output();
   }
@@ -109,10 +58,10 @@ class CanRun : public ::testing::Test {
         folder_ / "run.txt");
   }
   /// Ends the machine and reads its log.
-  MachineLog end_machine() {
+  MachineLogFile end_machine() {
     machine_->send(SIGTERM);
     EXPECT_EQ(machine_->wait(10.0), 0) << machine_->output();
-    return MachineLog(folder_ / "machine.csv");
+    return MachineLogFile(folder_ / "machine.csv");
   }
   nlohmann::json result() const {
     std::ifstream stream(folder_ / "run" / "result.json");
@@ -150,7 +99,7 @@ class CanRun : public ::testing::Test {
     ASSERT_FALSE(host_->poll().has_value()) << host_->output();
   }
   /// From the last command accepted before the row `end`, until which it is looked at.
-  void expect_stopped(const MachineLog& log, std::size_t end) {
+  void expect_stopped(const MachineLogFile& log, std::size_t end) {
     const std::size_t from = log.last_accepted(end);
     ASSERT_GT(from, 100u);
     const double joints_ms = log.ms_until_zero("moving", from, end);
@@ -174,7 +123,7 @@ TEST_F(CanRun, DrivesToItsGoalOverTheBus) {
   start_machine();
   start_run();
   ASSERT_EQ(host_->wait(200.0), 0) << host_->output();
-  const MachineLog log = end_machine();
+  const MachineLogFile log = end_machine();
   const nlohmann::json report = result();
   ASSERT_TRUE(report.is_object());
   EXPECT_EQ(report["success"], true);
@@ -200,10 +149,10 @@ TEST_F(CanRun, AKilledHostLeavesAMachineThatStands) {
   start_run();
   wait_for_motion();
   host_->send(SIGKILL);
-  // The clock of a machine in lock step waits a second before it runs by itself.
+  // The clock of an enabled machine in lock step waits for --patience before it runs by itself.
   ASSERT_TRUE(wait_for(10.0, [&] { return mode() == MachineMode::kFault; }));
   sleep(1);
-  const MachineLog log = end_machine();
+  const MachineLogFile log = end_machine();
   expect_stopped(log, log.size());
 }
 
@@ -215,7 +164,7 @@ TEST_F(CanRun, AFrozenHostDoesNotMoveTheMachineWhenItGoesOn) {
   ASSERT_TRUE(wait_for(10.0, [&] { return mode() == MachineMode::kFault; }));
   host_->send(SIGCONT);
   EXPECT_EQ(host_->wait(30.0), 5) << host_->output();
-  const MachineLog log = end_machine();
+  const MachineLogFile log = end_machine();
   expect_stopped(log, log.size());
 }
 
@@ -246,7 +195,7 @@ TEST_F(CanRun, AnEmergencyStopIsLatchedUntilAPersonResetsIt) {
   EXPECT_TRUE(wait_for(5.0, [&] { return mode() != MachineMode::kEStop; }));
   Process enabled = wex({"can", "enable", "vcan0", "--duration", "1"});
   EXPECT_EQ(enabled.wait(20.0), 0) << enabled.output();
-  const MachineLog log = end_machine();
+  const MachineLogFile log = end_machine();
   std::size_t end = log.first("estop");
   while (end < log.size() && log.text("mode", end) == "estop") ++end;
   expect_stopped(log, end);

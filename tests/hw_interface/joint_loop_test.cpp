@@ -102,7 +102,7 @@ TEST_F(JointLoopTest, SharesThePumpByScalingEveryHydraulicRate) {
   for (int i = 0; i < machine().num_joints(); ++i) {
     const Joint& limits = machine().joints[i];
     if (limits.role == JointRole::kWheel) {
-      EXPECT_NEAR(out.rate[i], limits.max_rate, 1.0) << "wheels have their own pump";
+      EXPECT_GT(out.rate[i], 0.9) << "wheels have their own pump";
     } else {
       flow_m3_s += std::abs(out.rate[i]) * limits.max_effort / machine().pump_pressure_pa;
     }
@@ -181,6 +181,44 @@ TEST_F(JointLoopTest, TargetsAreReachedBesideTheLoadBalancesOffset) {
   EXPECT_NEAR(measured_.position[hip] - offset_rad, command_.position_target[hip], 2e-3);
   run(nullptr, 3.0);
   EXPECT_EQ(loop_.offset_of_joint_rad(hip), offset_rad) << "frozen while holding";
+}
+
+TEST_F(JointLoopTest, TravelsNoFasterThanCanBeStoppedInTimeOnThisSlope) {
+  const StoppingSpeed allowed;
+  const double margin = JointLoopSettings{}.travel_margin;
+  for (const double pitch_rad : {0.0, 0.1, 0.3, -0.3}) {
+    for (const double sign : {1.0, -1.0}) {
+      loop_ = JointLoop(machine());
+      measured_.pitch_rad = pitch_rad;
+      for (int leg = 0; leg < kNumWheels; ++leg) command_.rate[wheel(leg)] = sign * 2.0;
+      const double rate = run(&command_, 4.0).rate[wheel(0)];
+      const double expected_m_s = margin * allowed.at(sign * pitch_rad);
+      EXPECT_NEAR(sign * rate * machine().legs[0].radius_m, expected_m_s, 1e-3)
+          << pitch_rad << " " << sign;
+    }
+  }
+}
+
+TEST_F(JointLoopTest, SlowingDownOnASlopeKeepsTheCurve) {
+  measured_.pitch_rad = 0.3;
+  const std::array<double, kNumWheels> asked{0.9, 1.1, 0.9, 1.1};
+  for (int leg = 0; leg < kNumWheels; ++leg) command_.rate[wheel(leg)] = asked[leg];
+  const ActuatorCommand out = run(&command_, 4.0);
+  EXPECT_LT(out.rate[wheel(1)], 0.6);
+  EXPECT_NEAR(out.rate[wheel(0)] / out.rate[wheel(1)], asked[0] / asked[1], 1e-3);
+}
+
+TEST(StoppingSpeed, FallsWithTheDescentAndIsNeverMoreThanOnLevelGround) {
+  const StoppingSpeed allowed;
+  EXPECT_EQ(allowed.at(-0.3), allowed.most_m_s);
+  EXPECT_EQ(allowed.at(0.0), allowed.most_m_s);
+  EXPECT_NEAR(allowed.at(0.3), allowed.level_m_s - allowed.per_grade_m_s * std::sin(0.3), 1e-12);
+  EXPECT_EQ(allowed.at(0.6), allowed.least_m_s);
+  EXPECT_EQ(allowed.at(std::nan("")), allowed.least_m_s);
+  EXPECT_EQ(allowed.share_of(0.1, 0.3), 1.0);
+  EXPECT_NEAR(allowed.share_of(1.0, 0.3), allowed.at(0.3), 1e-12);
+  EXPECT_NEAR(allowed.share_of(-1.0, 0.3), allowed.most_m_s, 1e-12) << "backwards is uphill here";
+  EXPECT_NEAR(allowed.share_of(-1.0, -0.3), allowed.at(0.3), 1e-12);
 }
 
 }  // namespace

@@ -232,7 +232,9 @@ TEST(SimulatedMachine, EvensOutItsWheelLoadsOnTwistedGround) {
         std::abs(load_n[0] - load_n[1] - load_n[2] + load_n[3]) / total_load_n(io->ground_truth());
     const MachineState after = io->read();
     for (int i = 0; i < after.num_joints; ++i) {
-      EXPECT_NEAR(after.position[i], before.position[i], 0.01)
+      // A braked wheel yields to what the legs push against one another.
+      const double tolerance = m545().joints[i].role == JointRole::kWheel ? 0.03 : 0.01;
+      EXPECT_NEAR(after.position[i], before.position[i], tolerance)
           << m545().joints[i].name << ": the caller does not see the balance";
     }
     EXPECT_EQ(io->load_balance_offset_rad()[0] != 0.0, balance);

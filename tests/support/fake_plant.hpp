@@ -31,7 +31,8 @@ class FakePlant final : public Plant {
       const bool wheel = joint.role == JointRole::kWheel;
       double& rate = state_.rate[i];
       if (wheel) {
-        rate += (input.motion_released ? kBlend : 1.0) * (input.wheel_rate[i] - rate);
+        rate += (input.motion_released && !input.braked[i] ? kBlend : 1.0) *
+                (input.wheel_rate[i] - rate);
       } else if (input.motion_released) {
         const double open = std::max(0.0, std::abs(input.spool[i]) - machine_.valve_dead_band);
         const double wanted = open / (1.0 - machine_.valve_dead_band) * joint.max_rate;

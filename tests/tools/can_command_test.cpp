@@ -121,6 +121,7 @@ class Bystander final : public can::FramePort {
  public:
   explicit Bystander(can::HostBench& bench) : bench_(bench) {}
   can::SocketStatus send(const can::CanFrame& frame) noexcept override {
+    ++sent;
     bench_.far.inject(frame);
     return can::SocketStatus::kOk;
   }
@@ -150,6 +151,7 @@ class Bystander final : public can::FramePort {
   bool purge() noexcept override { return false; }
   std::uint32_t dropped() const noexcept override { return 0; }
   bool deaf = false;
+  long sent = 0;
 
  private:
   can::HostBench& bench_;
@@ -166,6 +168,7 @@ TEST(Operate, StopsAndResetsAndSaysTheModeThatFollowed) {
   ASSERT_TRUE(stopped) << stopped.error().message;
   EXPECT_EQ(*stopped, can::MachineMode::kEStop);
   EXPECT_EQ(bench.host->lifecycle(), Lifecycle::kEStop);
+  EXPECT_EQ(bench.host->cause(), can::HostCause::kOperatorStop);
 
   const auto reset = operate(port, bench.clock, can::OperatorAction::kReset);
   ASSERT_TRUE(reset) << reset.error().message;
@@ -193,6 +196,10 @@ TEST(Operate, NobodyThereIsSaidSo) {
   const auto stopped = operate(port, bench.clock, can::OperatorAction::kStop);
   ASSERT_FALSE(stopped);
   EXPECT_EQ(stopped.error().code, ErrorCode::kBadInput);
+  EXPECT_GT(port.sent, 0) << "a stop does not wait until somebody is heard";
+  port.sent = 0;
+  EXPECT_FALSE(operate(port, bench.clock, can::OperatorAction::kReset));
+  EXPECT_EQ(port.sent, 0);
 }
 
 TEST(Monitor, OnceShowsOneTableAndFailsWhereNothingIsHeard) {

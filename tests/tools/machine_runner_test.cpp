@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "hw_interface/socketcan/frame_pipe.hpp"
 #include "tests/support/fake_plant.hpp"
@@ -55,13 +57,41 @@ class MachineRunnerTest : public ::testing::Test {
     bus_.host().send(frame);
   }
 
+  /// What a host sends in one period, from the handshake to the session, all commands neutral.
+  void act_as_host() {
+    const can::MachineAutomaton& machine = electronics_->automaton();
+    const std::uint32_t now_ms =
+        ticks_.empty() ? 0 : static_cast<std::uint32_t>(ticks_.back().first);
+    can::CanFrame frame;
+    can::HostHeartbeat heartbeat;
+    heartbeat.dbc_hash = can::dbc_hash();
+    heartbeat.session = machine.session();
+    heartbeat.request = machine.mode() == can::MachineMode::kInit ? can::HostRequest::kNone
+                                                                  : can::HostRequest::kEnable;
+    heartbeat.nonce = 77;
+    heartbeat.challenge_echo = machine.challenge();
+    ASSERT_TRUE(encode(heartbeat, heartbeat_context_, frame));
+    bus_.host().send(frame);
+    for (int zone = 0; zone < can::kNumZones && machine.session() != 0; ++zone) {
+      can::ZoneCommand command;
+      command.zone = zone;
+      command.valid_for_ms = 60;
+      command.echo_time_ms = now_ms;
+      command_context_[zone].session = machine.session();
+      ASSERT_TRUE(encode(command, command_context_[zone], frame));
+      bus_.host().send(frame);
+    }
+    allow(now_ms + 10);
+  }
+
   can::FramePipe bus_;
   can::FakePlant plant_{m545()};
   can::SeededRandom random_{1};
   std::unique_ptr<can::Electronics> electronics_;
   TestPacer pacer_;
   std::atomic<bool> stop_{false};
-  can::SendContext step_context_;
+  can::SendContext step_context_, heartbeat_context_;
+  std::array<can::SendContext, can::kNumZones> command_context_;
   std::vector<std::pair<std::int64_t, std::int64_t>> ticks_;  ///< machine ms, wall ns
   std::function<void(std::int64_t)> on_tick_;
   std::function<void()> on_wait_;
@@ -157,6 +187,53 @@ TEST_F(MachineRunnerTest, WithoutLockStepForASecondTheClockRunsByItself) {
   EXPECT_LT(ticks_[9].second - start_ns, 100 * kMs) << "as asked";
   EXPECT_GT(ticks_[10].second - ticks_[9].second, 980 * kMs) << "then it waits";
   EXPECT_NEAR(1e-9 * static_cast<double>(ticks_[99].second - ticks_[10].second), 0.89, 0.03);
+}
+
+TEST_F(MachineRunnerTest, ALongSolveWithinASessionIsWaitedFor) {
+  constexpr std::int64_t kSolve_ns = 3000 * kMs;
+  std::int64_t silent_until_ns = 0;
+  bool solved = false;
+  on_wait_ = [&] {
+    if (pacer_.time_ns < silent_until_ns) return;
+    if (!solved && electronics_->automaton().mode() == can::MachineMode::kEnabled) {
+      solved = true;
+      silent_until_ns = pacer_.time_ns + kSolve_ns;
+      return;
+    }
+    act_as_host();
+  };
+  on_tick_ = [&](std::int64_t) {
+    EXPECT_GE(pacer_.time_ns, silent_until_ns) << "the clock ran while the host was busy";
+  };
+  run({.lock_step = true, .exit_after_s = 3.0});
+  ASSERT_TRUE(solved);
+  EXPECT_EQ(electronics_->automaton().mode(), can::MachineMode::kEnabled);
+  EXPECT_EQ(electronics_->automaton().holds(), 0);
+}
+
+TEST_F(MachineRunnerTest, AHostThatDiesWithinASessionLeavesAMachineThatHoldsAndFaults) {
+  std::int64_t died_ns = 0, died_ms = 0;
+  on_wait_ = [&] {
+    if (died_ns > 0) return;
+    act_as_host();
+    if (electronics_->automaton().mode() != can::MachineMode::kEnabled) return;
+    died_ns = pacer_.time_ns;
+    died_ms = ticks_.back().first + 10;  // as far as the last LockStep allows
+  };
+  std::map<can::MachineMode, std::int64_t> first_ms;
+  std::int64_t ran_free_ns = 0;
+  on_tick_ = [&](std::int64_t now_ms) {
+    if (died_ns == 0 || now_ms <= died_ms) return;
+    if (ran_free_ns == 0) ran_free_ns = pacer_.time_ns;
+    first_ms.emplace(electronics_->automaton().mode(), now_ms - died_ms);
+    stop_ = electronics_->automaton().mode() == can::MachineMode::kFault;
+  };
+  run({.lock_step = true, .exit_after_s = 60.0, .free_run_in_session_after_s = 4.0});
+  EXPECT_NEAR(1e-9 * static_cast<double>(ran_free_ns - died_ns), 4.0, 0.05);
+  ASSERT_TRUE(first_ms.contains(can::MachineMode::kHold));
+  EXPECT_LE(first_ms[can::MachineMode::kHold], 60);
+  ASSERT_TRUE(first_ms.contains(can::MachineMode::kFault));
+  EXPECT_LE(first_ms[can::MachineMode::kFault], 520);
 }
 
 TEST_F(MachineRunnerTest, OneFrameCannotLetTheClockRunForEver) {

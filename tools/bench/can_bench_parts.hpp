@@ -23,9 +23,15 @@ struct CanBenchPart {
   int timeout_s = 300;
 };
 
-/// What the bench consists of. build: folder with the tests' programs below; source: of the tree.
-[[nodiscard]] std::vector<CanBenchPart> can_bench_parts(bool full,
-                                                        const std::filesystem::path& build,
-                                                        const std::filesystem::path& source);
+struct CanBenchSetting {
+  bool full = false;
+  bool real_time = true;          ///< real-time priority may be had
+  std::vector<std::string> only;  ///< "T6"; empty: all
+  std::filesystem::path build;    ///< folder with the tests' programs below
+  std::filesystem::path source;   ///< of the tree
+};
+
+/// What the bench consists of.
+[[nodiscard]] std::vector<CanBenchPart> can_bench_parts(const CanBenchSetting& setting);
 
 }  // namespace wex

@@ -1,6 +1,7 @@
 #include "tools/bench/can_bench_table.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <sstream>
 
 namespace wex {
@@ -128,6 +129,24 @@ std::string can_bench_csv(const std::vector<CanBenchRow>& rows) {
            (row.passed ? ",pass\n" : ",fail\n");
   }
   return csv;
+}
+
+std::vector<CanBenchRow> can_bench_rows_of_csv(const std::string& csv) {
+  std::vector<CanBenchRow> rows;
+  for (const std::string& line : split(csv, '\n')) {
+    const std::vector<std::string> fields = split(line, '"');  // none of them contains one
+    if (fields.size() != 7 || fields[0].size() < 2) continue;
+    rows.push_back({fields[0].substr(0, fields[0].size() - 1), fields[1], fields[3], fields[5],
+                    fields[6] == ",pass"});
+  }
+  return rows;
+}
+
+void sort_by_test(std::vector<CanBenchRow>& rows) {
+  const auto number = [](const CanBenchRow& row) { return std::atoi(row.test.c_str() + 1); };
+  std::stable_sort(rows.begin(), rows.end(), [&](const CanBenchRow& a, const CanBenchRow& b) {
+    return number(a) < number(b);
+  });
 }
 
 }  // namespace wex

@@ -20,5 +20,9 @@ struct CanBenchRow {
 /// For a terminal: one block per row, the figure wrapped below what was measured.
 [[nodiscard]] std::string can_bench_table(const std::vector<CanBenchRow>& rows);
 [[nodiscard]] std::string can_bench_csv(const std::vector<CanBenchRow>& rows);
+/// What can_bench_csv wrote; lines of anything else are left out.
+[[nodiscard]] std::vector<CanBenchRow> can_bench_rows_of_csv(const std::string& csv);
+/// T1 to T22; rows of one test stay in their order.
+void sort_by_test(std::vector<CanBenchRow>& rows);
 
 }  // namespace wex

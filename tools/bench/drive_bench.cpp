@@ -1,54 +1,24 @@
 #include "tools/bench/drive_bench.hpp"
 
-#include <fcntl.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
-#include <cstdio>
 #include <fstream>
 #include <map>
 
-#include "tools/bench/drive_bench_cases.hpp"
+#include "tools/bench/drive_bench_bus.hpp"
+#include "tools/bench/drive_bench_process.hpp"
 #include "tools/bench/drive_bench_table.hpp"
 
 namespace wex {
 namespace {
 
-std::string pose_text(const Pose2& pose) {
-  char text[96];
-  std::snprintf(text, sizeof(text), "%.4f,%.4f,%.5f", pose.x_m, pose.y_m, pose.yaw_rad);
-  return text;
-}
-
-std::vector<std::string> arguments(const DriveBenchRun& run) {
-  return {"wex",
-          "run",
-          run.map.string(),
-          "--start=" + pose_text(run.task_map.start),
-          "--goal=" + pose_text(run.task_map.goal),
-          "--seed=" + std::to_string(run.seed),
-          "--out=" + run.folder.string(),
-          "--frames=0"};
-}
-
 /// Starts this program on a run, its output in the run's log.txt.
-Result<pid_t> start(const DriveBenchRun& run) {
-  std::error_code error;
-  std::filesystem::create_directories(run.folder, error);
-  const std::string log = (run.folder / "log.txt").string();
-  std::vector<std::string> words = arguments(run);
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  const pid_t pid = fork();
-  if (pid < 0) return fail(ErrorCode::kInternal, "no process could be started for a run");
-  if (pid == 0) {
-    const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    if (file < 0 || dup2(file, 1) < 0 || dup2(file, 2) < 0) _exit(127);
-    execv("/proc/self/exe", argv.data());
-    _exit(127);
-  }
-  return pid;
+Result<pid_t> start(const DriveBenchRun& run, const DriveBenchOptions& options) {
+  std::error_code ignored;
+  std::filesystem::create_directories(run.folder, ignored);
+  std::vector<std::string> words = run_words(run, options);
+  words.push_back("--start=" + pose_text(run.task_map.start));
+  return start_program(std::move(words), run.folder / "log.txt");
 }
 
 bool has_result(const DriveBenchRun& run) {
@@ -59,6 +29,7 @@ bool has_result(const DriveBenchRun& run) {
 }  // namespace
 
 Result<int> bench_drive(const DriveBenchOptions& options, std::ostream& out, std::ostream& err) {
+  const bool on_bus = !options.can_interface.empty();
   const Result<std::vector<DriveBenchRun>> prepared = prepare_drive_bench(options);
   if (!prepared) return tl::unexpected(prepared.error());
   const std::vector<DriveBenchRun>& runs = *prepared;
@@ -76,20 +47,27 @@ Result<int> bench_drive(const DriveBenchOptions& options, std::ostream& out, std
     if (entry == running.end()) return;
     const std::size_t k = entry->second;
     running.erase(entry);
-    results[k] =
-        read_drive_bench_result(runs[k].folder, WIFEXITED(status) ? WEXITSTATUS(status) : 1);
+    results[k] = read_drive_bench_result(runs[k].folder, exit_code_of(status));
     note(k);
   };
   for (std::size_t k = 0; k < runs.size(); ++k) {
     if (options.resume && has_result(runs[k])) {
-      results[k] = read_drive_bench_result(runs[k].folder, 1);
+      results[k] =
+          on_bus ? read_bus_result(runs[k], 1) : read_drive_bench_result(runs[k].folder, 1);
       note(k);
       continue;
     }
     std::error_code ignored;
     std::filesystem::remove(runs[k].folder / "result.json", ignored);
+    if (on_bus) {  // there is one machine on a bus
+      Result<DriveBenchResult> driven = drive_on_bus(runs[k], options);
+      if (!driven) return tl::unexpected(driven.error());
+      results[k] = std::move(*driven);
+      note(k);
+      continue;
+    }
     while (static_cast<int>(running.size()) >= options.jobs) wait_for_one();
-    const Result<pid_t> pid = start(runs[k]);
+    const Result<pid_t> pid = start(runs[k], options);
     if (!pid) {
       while (!running.empty()) wait_for_one();
       return tl::unexpected(pid.error());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <random>
 
@@ -131,6 +132,23 @@ Result<void> add_real(const std::filesystem::path& map, const DriveBenchOptions&
 }
 
 }  // namespace
+
+std::string pose_text(const Pose2& pose) {
+  char text[96];
+  std::snprintf(text, sizeof(text), "%.4f,%.4f,%.5f", pose.x_m, pose.y_m, pose.yaw_rad);
+  return text;
+}
+
+std::vector<std::string> run_words(const DriveBenchRun& run, const DriveBenchOptions& options) {
+  std::vector<std::string> words{"run",
+                                 run.map.string(),
+                                 "--goal=" + pose_text(run.task_map.goal),
+                                 "--seed=" + std::to_string(run.seed),
+                                 "--out=" + run.folder.string(),
+                                 "--frames=0"};
+  if (!options.solve_delay.empty()) words.push_back("--solve-delay=" + options.solve_delay);
+  return words;
+}
 
 std::vector<std::string> drive_bench_case_names(const DriveBenchOptions& options) {
   std::vector<std::string> names;

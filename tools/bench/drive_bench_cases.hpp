@@ -15,6 +15,13 @@ struct DriveBenchRun {
   std::filesystem::path folder;
 };
 
+/// "X,Y,YAW" as the command line takes it.
+[[nodiscard]] std::string pose_text(const Pose2& pose);
+
+/// What `wex run` is asked in every run, but for the start, which a machine on a bus knows itself.
+[[nodiscard]] std::vector<std::string> run_words(const DriveBenchRun& run,
+                                                 const DriveBenchOptions& options);
+
 /// Names of the synthetic cases, and of the real map's where one is given.
 [[nodiscard]] std::vector<std::string> drive_bench_case_names(const DriveBenchOptions& options);
 

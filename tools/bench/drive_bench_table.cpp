@@ -65,6 +65,91 @@ std::string row(const std::string& name, const std::vector<const DriveBenchResul
                      worst.real_time_factor);
 }
 
+DriveBenchBus bus_figures(const nlohmann::json& json) {
+  const auto count = [&](const char* key) { return json.at(key).get<long>(); };
+  DriveBenchBus bus;
+  bus.frames_sent = count("frames_sent");
+  bus.frames_received = count("frames_received");
+  bus.frames_lost = count("frames_lost");
+  for (const char* key :
+       {"repeated", "wrong_sequence", "crc_errors", "malformed", "unknown_ids", "own_ids"}) {
+    bus.not_used += count(key);
+  }
+  bus.overflows = count("receive_overflows");
+  bus.stalls = count("stalls");
+  bus.false_holds = count("false_holds");
+  bus.faults = count("faults");
+  bus.load = number(json, "/load_machine_time");
+  bus.max_feedback_age_s = number(json, "/max_feedback_age_s");
+  const nlohmann::json& latency = json.at("command_to_report_ms");
+  bus.latency_edges_ms = latency.at("upper_edges").get<std::vector<double>>();
+  bus.latency_counts = latency.at("counts").get<std::vector<long>>();
+  bus.latency_max_ms = number(latency, "/max");
+  return bus;
+}
+
+/// Upper edge of the bin that a share of all durations stays below.
+double percentile_ms(const DriveBenchBus& pooled, double share) {
+  long all = 0, below = 0;
+  for (const long count : pooled.latency_counts) all += count;
+  for (std::size_t bin = 0; bin < pooled.latency_edges_ms.size(); ++bin) {
+    below += pooled.latency_counts[bin];
+    if (static_cast<double>(below) >= share * static_cast<double>(all)) {
+      return std::min(pooled.latency_edges_ms[bin], pooled.latency_max_ms);
+    }
+  }
+  return pooled.latency_max_ms;
+}
+
+/// Sums of counts, worst of loads and ages.
+void pool(const DriveBenchBus& run, DriveBenchBus& pooled) {
+  pooled.frames_sent += run.frames_sent;
+  pooled.frames_received += run.frames_received;
+  pooled.frames_lost += run.frames_lost;
+  pooled.not_used += run.not_used;
+  pooled.overflows += run.overflows;
+  pooled.stalls += run.stalls;
+  pooled.false_holds += run.false_holds;
+  pooled.faults += run.faults;
+  pooled.load = std::max(pooled.load, run.load);
+  pooled.max_feedback_age_s = std::max(pooled.max_feedback_age_s, run.max_feedback_age_s);
+  pooled.latency_edges_ms = run.latency_edges_ms;
+  pooled.latency_counts.resize(std::max(pooled.latency_counts.size(), run.latency_counts.size()));
+  for (std::size_t bin = 0; bin < run.latency_counts.size(); ++bin) {
+    pooled.latency_counts[bin] += run.latency_counts[bin];
+  }
+  pooled.latency_max_ms = std::max(pooled.latency_max_ms, run.latency_max_ms);
+  pooled.machine_holds += run.machine_holds;
+  pooled.commands_rejected += run.commands_rejected;
+}
+
+std::string bus_row(const std::string& name, const std::vector<const DriveBenchResult*>& runs) {
+  DriveBenchBus pooled;
+  int count = 0;
+  for (const DriveBenchResult* run : runs) {
+    if (!run->bus) continue;
+    ++count;
+    pool(*run->bus, pooled);
+  }
+  if (count == 0) return "";
+  return format(
+      "%-14s %4d %9ld %9ld %5ld %8ld %5ld %6ld %5ld %6ld %7d %8ld %5.1f %4.0f %5.1f %5.1f "
+      "%6.1f\n",
+      name.c_str(), count, pooled.frames_sent, pooled.frames_received, pooled.frames_lost,
+      pooled.not_used, pooled.overflows, pooled.stalls, pooled.false_holds, pooled.faults,
+      pooled.machine_holds, pooled.commands_rejected, 100.0 * pooled.load,
+      1e3 * pooled.max_feedback_age_s, percentile_ms(pooled, 0.5), percentile_ms(pooled, 0.99),
+      pooled.latency_max_ms);
+}
+
+constexpr const char* kBusHeader =
+    "the bus, as the host saw it: sums over the runs, worst load (of machine time) and age;\n"
+    "machine: times it held (one each is the arrival), commands it refused\n"
+    "case           runs frames    frames                                           machine  "
+    "machine  load  age  command to report ms\n"
+    "                    sent      received   lost   unused  over stalls holds faults   holds  "
+    "refused     %   ms   p50   p99    max\n";
+
 }  // namespace
 
 DriveBenchResult read_drive_bench_result(const std::filesystem::path& folder, int exit_code) {
@@ -102,6 +187,7 @@ DriveBenchResult read_drive_bench_result(const std::filesystem::path& folder, in
     result.misses = static_cast<int>(number(json, "/mpc/misses"));
     result.unusable = static_cast<int>(number(json, "/mpc/unusable"));
     result.real_time_factor = number(json, "/drive/real_time_factor");
+    if (json.contains("bus")) result.bus = bus_figures(json.at("bus"));
   } catch (const nlohmann::json::exception& exception) {
     result.success = false;
     result.reason = "unreadable result.json: " + std::string(exception.what());
@@ -132,12 +218,14 @@ std::string drive_bench_table(const std::vector<DriveBenchRun>& runs,
   for (const DriveBenchRun& run : runs) {
     if (names.empty() || names.back() != run.name) names.push_back(run.name);
   }
+  std::string bus_table;
   for (const std::string& name : names) {
     std::vector<const DriveBenchResult*> members;
     for (std::size_t k = 0; k < runs.size(); ++k) {
       if (runs[k].name == name) members.push_back(&results[k]);
     }
     table += row(name, members);
+    bus_table += bus_row(name, members);
   }
   const auto successes = static_cast<int>(
       std::count_if(results.begin(), results.end(), [](const auto& r) { return r.success; }));
@@ -145,6 +233,7 @@ std::string drive_bench_table(const std::vector<DriveBenchRun>& runs,
   table += format("pooled: %d of %zu = %.1f %% (Wilson 95 %%: %.1f to %.1f %%)\n", successes,
                   results.size(), 100.0 * successes / static_cast<double>(results.size()),
                   100.0 * lo, 100.0 * hi);
+  if (!bus_table.empty()) table += kBusHeader + bus_table;
   for (std::size_t k = 0; k < runs.size(); ++k) {
     if (results[k].success) continue;
     table += format("failed: %s seed %d, exit code %d: ", runs[k].name.c_str(), runs[k].seed,
@@ -166,7 +255,9 @@ std::string drive_bench_csv(const std::vector<DriveBenchRun>& runs,
       "case,seed,start_x,start_y,start_yaw,goal_x,goal_y,goal_yaw,rejected_draws,success,exit_code,"
       "goal_error_m,goal_error_rad,path_m,planned_s,driven_s,side_slip_ratio,margin_m,roll_rad,"
       "pitch_rad,penetration_m,hold_rate_m_s,lift_off_s,solve_p50_ms,solve_p99_ms,solve_max_ms,"
-      "solves,misses,unusable,real_time_factor,reason\n";
+      "solves,misses,unusable,real_time_factor,frames_sent,frames_received,frames_lost,not_used,"
+      "overflows,stalls,false_holds,faults,machine_holds,commands_refused,load,"
+      "max_feedback_age_s,latency_p50_ms,latency_p99_ms,latency_max_ms,reason\n";
   for (std::size_t k = 0; k < runs.size(); ++k) {
     const DriveBenchRun& run = runs[k];
     const DriveBenchResult& r = results[k];
@@ -181,6 +272,12 @@ std::string drive_bench_csv(const std::vector<DriveBenchRun>& runs,
         r.margin_m, r.roll_rad, r.pitch_rad, r.penetration_m, r.hold_rate_m_s, r.lift_off_s,
         r.solve_p50_ms, r.solve_p99_ms, r.solve_max_ms, r.solves, r.misses, r.unusable,
         r.real_time_factor);
+    const DriveBenchBus bus = r.bus.value_or(DriveBenchBus{});  // without a bus: zeros
+    csv += format("%ld,%ld,%ld,%ld,%ld,%ld,%ld,%ld,%d,%ld,%.4f,%.4f,%.2f,%.2f,%.2f,",
+                  bus.frames_sent, bus.frames_received, bus.frames_lost, bus.not_used,
+                  bus.overflows, bus.stalls, bus.false_holds, bus.faults, bus.machine_holds,
+                  bus.commands_rejected, bus.load, bus.max_feedback_age_s, percentile_ms(bus, 0.5),
+                  percentile_ms(bus, 0.99), bus.latency_max_ms);
     std::string reason = r.reason;
     std::replace(reason.begin(), reason.end(), '"', '\'');
     csv += "\"" + reason + "\"\n";

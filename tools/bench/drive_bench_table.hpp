@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -7,6 +8,20 @@
 #include "tools/bench/drive_bench_cases.hpp"
 
 namespace wex {
+
+/// What the host saw of the bus (object "bus" of result.json), and the machine's log of the same.
+struct DriveBenchBus {
+  long frames_sent = 0, frames_received = 0, frames_lost = 0;
+  long not_used = 0;  ///< received, but altered, repeated, out of order, malformed or foreign
+  long overflows = 0, stalls = 0, false_holds = 0, faults = 0;
+  double load = 0.0;  ///< share of machine time
+  double max_feedback_age_s = 0.0;
+  std::vector<double> latency_edges_ms;  ///< command to report: upper edges, the last bin is open
+  std::vector<long> latency_counts;
+  double latency_max_ms = 0.0;
+  int machine_holds = 0;  ///< one of them is the arrival
+  long commands_rejected = 0;
+};
 
 /// What one run's result.json says, in the units of the table.
 struct DriveBenchResult {
@@ -22,6 +37,7 @@ struct DriveBenchResult {
   double solve_p50_ms = 0.0, solve_p99_ms = 0.0, solve_max_ms = 0.0;
   int solves = 0, misses = 0, unusable = 0;
   double real_time_factor = 0.0;
+  std::optional<DriveBenchBus> bus;  ///< of a run over a bus
 };
 
 /// Reads a run's result.json.
@@ -32,7 +48,8 @@ struct DriveBenchResult {
 /// Wilson score interval of a success rate, 95 %.
 [[nodiscard]] std::pair<double, double> wilson_interval(int successes, int runs);
 
-/// The table for stdout: one row per case, the pooled rate, every failure with its reason.
+/// The table for stdout: one row per case, the pooled rate, every failure with its reason; of runs
+/// over a bus also a row of its figures per case.
 [[nodiscard]] std::string drive_bench_table(const std::vector<DriveBenchRun>& runs,
                                             const std::vector<DriveBenchResult>& results);
 

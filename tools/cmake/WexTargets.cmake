@@ -1,5 +1,5 @@
 # wex_library(NAME SOURCES ... [DEPS ...] [PRIVATE_DEPS ...]), wex_test(NAME [DEPS ...] [LABELS ...])
-# and wex_vcan_test(NAME [FAULTS] [REAL_TIME] [DEPS ...] [TIMEOUT seconds]).
+# and wex_vcan_test(NAME [FAULTS] [DEPS ...] [TIMEOUT seconds]).
 # All project flags live here.
 include(GoogleTest)
 
@@ -43,9 +43,9 @@ endfunction()
 
 # A test that needs a CAN bus: the executable NAME through tools/with_vcan, as one test (one boot of
 # User-Mode Linux), alone on the machine. Where no CAN can be had it fails; skipping fails too.
-# FAULTS: with_vcan --faults; REAL_TIME: its times are judged, so it gets real-time priority.
+# FAULTS: with_vcan --faults.
 function(wex_vcan_test name)
-  cmake_parse_arguments(ARG "FAULTS;REAL_TIME" "TIMEOUT" "DEPS" ${ARGN})
+  cmake_parse_arguments(ARG "FAULTS" "TIMEOUT" "DEPS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
@@ -55,9 +55,6 @@ function(wex_vcan_test name)
   endif()
   math(EXPR kill_after "${ARG_TIMEOUT} + 15") # with_vcan says more about a time-out than ctest
   set(environment OPENBLAS_NUM_THREADS=1 WITH_VCAN_TIMEOUT=${ARG_TIMEOUT})
-  if(ARG_REAL_TIME)
-    list(APPEND environment WITH_VCAN_RT=20)
-  endif()
   add_executable(${name} ${name}.cpp)
   target_link_libraries(${name} PRIVATE ${ARG_DEPS} wex_flags GTest::gmock_main)
   add_test(NAME ${name} COMMAND "${CMAKE_SOURCE_DIR}/tools/with_vcan" ${options} -- $<TARGET_FILE:${name}>)

@@ -76,6 +76,8 @@ Json bus_json(const BusReport& report) {
           {"log", text_or_null(report.log)},
           {"load", s.bus_load},
           {"max_load", s.max_bus_load},
+          {"load_machine_time",
+           report.machine_s > 0.0 ? Json(s.busy_s / report.machine_s) : Json(nullptr)},
           {"messages", messages_json(s)},
           {"frames_sent", s.frames_sent()},
           {"frames_received", s.frames_received()},

@@ -14,7 +14,8 @@ struct BusReport {
   std::string end_state;   ///< of the host's automaton: "inactive", "fault", ...
   std::string cause;       ///< why it is in that state; empty: nothing to say
   can::BusStatistics statistics;
-  std::string log;  ///< file in the output folder with the last frames; empty: none written
+  double machine_s = 0.0;  ///< machine time that passed meanwhile; 0: not known
+  std::string log;         ///< file in the output folder with the last frames; empty: none written
 };
 
 /// For a person: "inactive", "active", "fault" ...

@@ -11,6 +11,7 @@
 #include "hw_interface/socketcan/can_socket.hpp"
 #include "tools/wex/bus_monitor.hpp"
 #include "tools/wex/bus_report.hpp"
+#include "tools/wex/real_time_priority.hpp"
 #include "tools/wex/stop_signal.hpp"
 
 namespace wex::app {
@@ -79,12 +80,18 @@ Result<can::MachineMode> operate(can::FramePort& port, can::MonotonicClock& cloc
   // The receiver trusts a sender that it has not heard for long after three frames, and a reset
   // counts on its edge: first without action, then with it, at last without.
   constexpr int kIdleFrames = 5, kActionFrames = 5;
-  constexpr double kGap_s = 0.03, kHear_s = 0.5, kPatience_s = 2.0;
+  constexpr double kGap_s = 0.03, kHear_s = 2.0, kPatience_s = 2.0;
+  const auto nobody = [](const char* sent) {
+    return fail(ErrorCode::kBadInput, std::string("no machine is heard on the bus") + sent +
+                                          ": is it switched on, and are the bit rates equal?");
+  };
   ZoneModes modes;
-  listen(port, clock, kHear_s, modes);
-  if (!modes.heard()) {
-    return fail(ErrorCode::kBadInput,
-                "no machine is heard on the bus: is it switched on, and are the bit rates equal?");
+  if (action == can::OperatorAction::kReset) {  // a stop goes out at once
+    const std::int64_t begin_ns = clock.now_ns();
+    while (!modes.heard() && seconds_since(begin_ns, clock) < kHear_s) {
+      listen(port, clock, kGap_s, modes);
+    }
+    if (!modes.heard()) return nobody("");
   }
   can::SendContext context;
   const auto send = [&](can::OperatorAction what, int times) {
@@ -109,6 +116,7 @@ Result<can::MachineMode> operate(can::FramePort& port, can::MonotonicClock& cloc
     listen(port, clock, kGap_s, modes);
   }
   if (confirmed()) return modes.mode();
+  if (action == can::OperatorAction::kStop && !modes.heard()) return nobody(", the stop was sent");
   const std::string mode =
       modes.heard() ? std::string("reports ") + can::to_string(modes.mode()) : "is silent";
   return fail(ErrorCode::kStoppedSafely,
@@ -208,6 +216,8 @@ Result<void> run_can(const CanOptions& options, std::ostream& out) {
     if (!model) return tl::unexpected(model.error());
     auto machine = can::SocketCanMachine::open(options.can_interface, *model, {0.0, 0.0});
     if (!machine) return tl::unexpected(machine.error());
+    std::optional<RealTimePriority> priority;
+    if (!(*machine)->lock_step()) priority.emplace();
     return keep_enabled(**machine, options.duration_s, out, stop);
   }
   Result<can::CanSocket> socket = can::CanSocket::open(options.can_interface);

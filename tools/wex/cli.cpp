@@ -223,8 +223,17 @@ void add_can_machine(CLI::App& app, MachineOptions& machine) {
       ->required();
   add_pose(command, "--start", machine.start,
            "Where it stands, in the map's frame [the JSON beside MAP; 0,0,0 on flat ground]");
-  command.add_flag("--lock-step", machine.lock_step,
-                   "The clock goes on as the host's LockStep frames let it (functional tests)");
+  CLI::Option* lock_step =
+      command.add_flag("--lock-step", machine.lock_step,
+                       "The clock goes on as the host's LockStep frames let it (functional tests)");
+  command
+      .add_option("--patience", machine.patience_s,
+                  "How long the clock of an enabled machine waits for LockStep frames before it "
+                  "runs by itself, so that time-outs bite")
+      ->needs(lock_step)
+      ->check(CLI::Range(0.1, 600.0))
+      ->type_name("S")
+      ->capture_default_str();
   command.add_option("--log", machine.log, "CSV of the machine's own truth, 100 Hz")
       ->type_name("FILE");
   command
@@ -384,6 +393,8 @@ void add_bench(CLI::App& app, Options& options) {
       "can",
       "The bus: every test of protocol, interface and electronics, with faults, in one table");
   bus.add_flag("--full", can.full, "All of it, about 75 minutes [under 6 minutes]");
+  bus.add_option("--only", can.only, "Only these tests (repeatable), the others' rows as they were")
+      ->type_name("T1..T22");
   bus.add_option("--out", can.out, "Folder for can_bench.csv and the log")
       ->type_name("DIR")
       ->capture_default_str();
@@ -414,6 +425,19 @@ void add_bench(CLI::App& app, Options& options) {
   drives.add_flag("--resume", drive.resume, "Keep runs whose result.json is there");
   drives.add_option("--map", drive.real_maps, "Real maps instead of the bundled ones (repeatable)")
       ->type_name("MAP");
+  drives
+      .add_option("--solve-delay", drive.solve_delay,
+                  "As in wex run; on a loaded computer, inside User-Mode Linux, milliseconds stand "
+                  "for a free one [measured]")
+      ->check(parsed_by(parse_solve_delay))
+      ->type_name("measured|MS");
+  CLI::Option& interface = *drives.add_option(
+      "--can", drive.can_interface,
+      "Each run as two processes over this CAN interface, one run at a time: judged by the "
+      "machine's own log");
+  interface.type_name("IFACE")->check(parsed_by(check_interface_name));
+  drives.add_flag("--real-time", drive.real_time, "On the bus: the machine's clock does not wait")
+      ->needs(&interface);
 }
 
 int refuse(std::ostream& err, const Error& error) {

@@ -11,6 +11,7 @@
 #include "models/terrain/synthetic.hpp"
 #include "tools/wex/machine_log.hpp"
 #include "tools/wex/machine_runner.hpp"
+#include "tools/wex/real_time_priority.hpp"
 #include "tools/wex/scenario.hpp"
 #include "tools/wex/stop_signal.hpp"
 
@@ -97,13 +98,18 @@ Result<void> run_machine(const MachineOptions& options, std::ostream& out) {
   MachineRunner runner(**electronics, *socket, pacer,
                        {.lock_step = options.lock_step,
                         .estop_after_s = options.estop_after_s,
-                        .exit_after_s = options.exit_after_s},
+                        .exit_after_s = options.exit_after_s,
+                        .free_run_in_session_after_s = options.patience_s},
                        [&](std::int64_t now_ms) {
                          if (log) log->row(now_ms, **electronics, **plant);
                        });
   out << "wex machine: " << machine->name << " on " << options.can_interface << ", "
       << (options.lock_step ? "lock step" : "real time") << std::endl;
-  runner.run(stop_requested);
+  {
+    std::optional<RealTimePriority> priority;
+    if (!options.lock_step) priority.emplace();
+    runner.run(stop_requested);
+  }
   out << summary(**electronics, runner.now_ms()) << std::flush;
   if (log) return log->close();
   return {};

@@ -17,6 +17,7 @@ struct MachineOptions {
   std::filesystem::path map;   ///< empty: flat ground
   std::optional<Pose2> start;  ///< map frame; default: the JSON beside the map, or the origin
   bool lock_step = false;
+  double patience_s = 10.0;  ///< lock step: wall time an enabled machine's clock waits for the host
   std::filesystem::path log;                          ///< empty: none
   std::optional<double> estop_after_s, exit_after_s;  ///< machine time
   std::optional<std::uint64_t> seed;  ///< of challenges and sessions; empty: the kernel's generator

@@ -1,9 +1,11 @@
 #include "tools/wex/machine_log.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 
 namespace wex::app {
 namespace {
@@ -50,8 +52,10 @@ MachineLog::MachineLog(std::filesystem::path name, std::FILE* file, const Machin
   for (int wheel = 0; wheel < kNumWheels; ++wheel) {
     std::fprintf(file, ",load_%s", std::string(kLimbNames[wheel]).c_str());
   }
-  std::fputs(",bucket_x,bucket_y,bucket_z,accepted,rejected,moving,travelling,driven,brakes\n",
-             file);
+  std::fputs(
+      ",bucket_x,bucket_y,bucket_z,accepted,rejected,moving,travelling,driven,brakes,base_dz,sink,"
+      "side_slip,travel,lift_off,margin,body_contact\n",
+      file);
 }
 
 Result<MachineLog> MachineLog::open(const std::filesystem::path& file, const MachineModel& machine,
@@ -100,9 +104,17 @@ void MachineLog::row(std::int64_t now_ms, const can::Electronics& electronics,
   for (int i = 0; i < num_joints; ++i) driven = driven || input.spool[i] != 0.0;
   driven = input.motion_released && (driven || !electronics.brakes_closed());
   const can::ElectronicsCounters& counters = electronics.counters();
-  std::fprintf(file, ",%ld,%ld,%d,%d,%d,%d\n", counters.commands_accepted,
+  std::fprintf(file, ",%ld,%ld,%d,%d,%d,%d", counters.commands_accepted,
                counters.commands_rejected(), moving, travelling, driven,
                electronics.brakes_closed());
+  const auto sum = [](const auto& wheels) {
+    return std::accumulate(wheels.begin(), wheels.end(), 0.0);
+  };
+  std::fprintf(
+      file, ",%.5f,%.5f,%.4f,%.4f,%.2f,%.3f,%d\n", truth.base_vertical_rate_m_s,
+      *std::max_element(truth.wheel_penetration_m.begin(), truth.wheel_penetration_m.end()),
+      sum(truth.side_slip_m), sum(truth.wheel_travel_m), sum(truth.airborne_s),
+      truth.stability_margin_m, truth.body_contact);
 }
 
 Result<void> MachineLog::close() {

@@ -24,6 +24,14 @@ namespace wex::app {
 ///                            columns
 ///   driven                   1 while the electronics let a spool open or a wheel turn
 ///   brakes                   1 while all parking brakes and the swing brake are closed
+///   base_dz                  vertical rate of the base [m/s]
+///   sink                     deepest wheel disc below the ground [m]
+///   side_slip, travel        sums over the wheels so far [m]: integral of |patch velocity along
+///   the
+///                            axle| while loaded; way rolled
+///   lift_off                 sum over the wheels of the time without load so far [s]
+///   margin                   centre of mass to the edge of the loaded wheels [m]
+///   body_contact             1 once anything but wheels and bucket has touched the ground
 class MachineLog {
  public:
   /// errors  kBadInput: the file cannot be written

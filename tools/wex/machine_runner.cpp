@@ -66,9 +66,16 @@ void MachineRunner::tick_real_time() {
   tick_until(now_ms_ + kPeriod_ms);
 }
 
+std::int64_t MachineRunner::patience_ns() const noexcept {
+  const bool in_session = electronics_->automaton().session() != 0;
+  return nanoseconds(in_session ? settings_.free_run_in_session_after_s
+                                : settings_.free_run_after_s);
+}
+
 void MachineRunner::wait_for_lock_step() {
   electronics_->receive(now_ms_);
   if (const auto until = electronics_->take_lock_step()) {
+    free_running_ = false;
     lock_step_heard_ns_ = pacer_->now_ns();
     // 32 bits of milliseconds wrap; their difference does not.
     const auto ahead_ms = static_cast<std::int32_t>(*until - static_cast<std::uint32_t>(now_ms_));
@@ -78,8 +85,11 @@ void MachineRunner::wait_for_lock_step() {
   }
   const std::int64_t now_ns = pacer_->now_ns();
   double wait_s = kLongestWait_s;
-  if (now_ns - lock_step_heard_ns_ >= nanoseconds(settings_.free_run_after_s)) {
-    if (next_tick_ns_ < lock_step_heard_ns_) next_tick_ns_ = now_ns;
+  if (!free_running_ && now_ns - lock_step_heard_ns_ >= patience_ns()) {
+    free_running_ = true;
+    next_tick_ns_ = now_ns;
+  }
+  if (free_running_) {
     if (now_ns >= next_tick_ns_) {
       tick_real_time();
       return;
@@ -110,8 +120,7 @@ void MachineRunner::keep_port_open() {
 void MachineRunner::run(const std::atomic<bool>& stop) {
   // In lock step, too, the clock first runs by itself: a host must be able to hear the machine.
   next_tick_ns_ = pacer_->now_ns() + kPeriod_ms * kNanosecondsPerMs;
-  lock_step_heard_ns_ =
-      next_tick_ns_ - nanoseconds(settings_.free_run_after_s) - kPeriod_ms * kNanosecondsPerMs;
+  free_running_ = true;
   while (!stop && !over()) {
     if (settings_.lock_step) {
       wait_for_lock_step();

@@ -29,7 +29,9 @@ struct MachineRunnerSettings {
   bool lock_step = false;
   std::optional<double> estop_after_s = std::nullopt,
                         exit_after_s = std::nullopt;  ///< machine time
-  double free_run_after_s = 1.0;  ///< wall time without LockStep until the clock runs by itself
+  // Wall time without LockStep until the clock runs by itself. Within a session the host may be
+  // busy with a long solve on a loaded computer, or dead: only time tells.
+  double free_run_after_s = 1.0, free_run_in_session_after_s = 10.0;
   double forget_after_s = 0.1;    ///< later than that, periods are left out, not caught up
   double max_lock_step_s = 10.0;  ///< what one LockStep frame may ask for
   double reopen_after_s = 0.1;    ///< a lost interface; doubled with every failure
@@ -57,6 +59,7 @@ class MachineRunner {
   void wait_for_lock_step();
   void keep_port_open();
   [[nodiscard]] bool over() const noexcept;
+  [[nodiscard]] std::int64_t patience_ns() const noexcept;
 
   can::Electronics* electronics_;
   can::FramePort* port_;
@@ -65,6 +68,7 @@ class MachineRunner {
   std::function<void(std::int64_t)> on_tick_;
   std::int64_t now_ms_ = 0;
   std::int64_t next_tick_ns_ = 0;
+  bool free_running_ = true;  ///< lock step: until a LockStep is heard, and when they stay away
   std::int64_t lock_step_heard_ns_ = 0;
   std::int64_t reopen_at_ns_ = 0;
   double backoff_s_ = 0.0;

@@ -12,6 +12,7 @@
 #include "tools/wex/motion_csv.hpp"
 #include "tools/wex/output_folder.hpp"
 #include "tools/wex/overview_picture.hpp"
+#include "tools/wex/real_time_priority.hpp"
 #include "tools/wex/scenario.hpp"
 #include "tools/wex/timeline_picture.hpp"
 
@@ -94,6 +95,7 @@ class Pipeline {
         folder_(std::move(folder)),
         bus_(std::move(bus)),
         lock_step_(bus_ && bus_->lock_step()),
+        bus_begin_s_(bus_ ? bus_->read().t_s : 0.0),
         watch_(watch),
         progress_(progress) {
     report_.options = options;
@@ -232,6 +234,8 @@ class Pipeline {
     DriveSettings settings;
     settings.solve_delay_s = report_.options.solve_delay_s;
     settings.solve_beside = !lock_step_;
+    std::optional<RealTimePriority> priority;
+    if (!lock_step_) priority.emplace();
     if (const Result<void> enabled = bus_->activate(); enabled) {
       report_.drive = drive(scenario_.terrain, scenario_.machine, *report_.refined,
                             scenario_.task.goal, *bus_, instruments, settings);
@@ -240,7 +244,9 @@ class Pipeline {
       report_.failure = enabled.error();
     }
     bus_->deactivate();
+    priority.reset();
     report_.bus = bus_report(report_.options.can_interface, lock_step_, *bus_);
+    report_.bus->machine_s = bus_->read().t_s - bus_begin_s_;
     StageTime time = watch_.lap();
     if (settings.solve_beside && report_.drive) {
       for (const SolveSample& solve : report_.drive->solves) time.cpu_s += solve.cpu_time_s;
@@ -291,6 +297,7 @@ class Pipeline {
   OutputFolder folder_;
   std::unique_ptr<can::SocketCanMachine> bus_;  ///< empty: the simulation
   bool lock_step_;
+  double bus_begin_s_;  ///< machine time
   Stopwatch watch_;
   Progress& progress_;
   RunReport report_;

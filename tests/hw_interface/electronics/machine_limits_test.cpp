@@ -143,8 +143,8 @@ TEST_F(MachineLimitsTest, LostCommandsGiveTimeButNotForEver) {
   EXPECT_EQ(judge(kJoint, 0.1 + 3.0 * per_cycle), LimitVerdict::kOk);
   EXPECT_EQ(judge(kJoint, 0.1 + 4.0 * per_cycle), LimitVerdict::kRateChange);
   now_ms_ += 970;
-  EXPECT_EQ(judge(kJoint, 0.1 + 5.0 * per_cycle), LimitVerdict::kOk);
-  EXPECT_EQ(judge(kJoint, 0.1 + 6.0 * per_cycle), LimitVerdict::kRateChange);
+  EXPECT_EQ(judge(kJoint, 0.1 + 5.0 * per_cycle + 1.9e-3), LimitVerdict::kOk);
+  EXPECT_EQ(judge(kJoint, 0.1 + 5.0 * per_cycle + 2.1e-3), LimitVerdict::kRateChange);
 }
 
 TEST_F(MachineLimitsTest, TwoCommandsInOneInstantAreEachAllowedOneCycle) {
@@ -200,6 +200,83 @@ TEST_F(MachineLimitsTest, TheWindowKnowsBothExtremesOfOneInstant) {
   }
 }
 
+TEST_F(MachineLimitsTest, TheWindowKnowsWhatWasBetweenTwoCommandsOfOneInstant) {
+  for (const double sign : {1.0, -1.0}) {
+    history(kJoint, sign * 0.3, 30);
+    limits_.accept(command(kJoint, 0.0), now_ms_);
+    limits_.accept(command(kJoint, sign * 0.3), now_ms_);
+    EXPECT_EQ(judge(kJoint, sign * 0.3), LimitVerdict::kWindow);
+  }
+}
+
+TEST_F(MachineLimitsTest, TheWindowIsAsWideAsItSays) {
+  history(kJoint, 0.0, 30);
+  history(kJoint, 0.1219, 1);
+  EXPECT_EQ(judge(kJoint, 0.1219), LimitVerdict::kOk) << "1.2 * 0.4 * 0.25 + 0.002 = 0.122";
+  EXPECT_EQ(judge(kJoint, 0.1221), LimitVerdict::kWindow);
+}
+
+TEST_F(MachineLimitsTest, TheWindowMovesInStepsOf10Ms) {
+  now_ms_ = 4993;
+  history(kJoint, 0.0, 1);  // at 5003
+  now_ms_ = 5015;
+  history(kJoint, 0.3, 1);
+  limits_.accept(command(kJoint, 0.3), now_ms_);
+  now_ms_ = 5259;
+  EXPECT_EQ(judge(kJoint, 0.3), LimitVerdict::kWindow);
+  now_ms_ = 5260;
+  EXPECT_EQ(judge(kJoint, 0.3), LimitVerdict::kOk);
+}
+
+TEST_F(MachineLimitsTest, TheLongestWindowForgetsNothingTooEarly) {
+  settings_.window_ms = MachineLimits::kMaxWindow_ms;
+  ASSERT_EQ(settings_.window_ms, 500);
+  limits_ = make(settings_);
+  limits_.reset(now_ms_);
+  history(kJoint, kMaxRate, 50);
+  EXPECT_EQ(judge(kJoint, kMaxRate), LimitVerdict::kWindow) << "0 is 500 ms ago";
+  history(kJoint, kMaxRate, 1);
+  EXPECT_EQ(judge(kJoint, kMaxRate), LimitVerdict::kOk) << "0 is 510 ms ago";
+}
+
+TEST_F(MachineLimitsTest, BeforeTheFirstCommandEverythingStood) {
+  limits_ = make(settings_);
+  now_ms_ = 20;
+  EXPECT_EQ(judge(kJoint, 0.0115), LimitVerdict::kOk) << "1.2 * 0.4 * 0.02 + 0.002 = 0.0116";
+  EXPECT_EQ(judge(kJoint, 0.0117), LimitVerdict::kRateChange);
+  now_ms_ = 235;
+  limits_.accept(command(kJoint, 0.3), now_ms_);
+  now_ms_ = 240;
+  EXPECT_EQ(judge(kJoint, 0.3), LimitVerdict::kWindow);
+  now_ms_ = 250;
+  EXPECT_EQ(judge(kJoint, 0.3), LimitVerdict::kOk);
+}
+
+TEST_F(MachineLimitsTest, TheLimitsThemselvesAreAllowed) {
+  // Numbers without rounding: what stands exactly at a limit passes, the next number does not.
+  const auto next = [](double rate) { return std::nextafter(rate, kInfinity); };
+  settings_.rate_tolerance = settings_.latency_allowance_s = 0.0;
+  MachineLimits::Limits limits{};
+  limits[kJoint] = {-1.0, 1.0, 0.5, 0.5};
+  limits_ = MachineLimits(limits, {}, settings_);
+  history(kJoint, 0.5, 30);
+  EXPECT_EQ(judge(kJoint, 0.5), LimitVerdict::kOk);
+  EXPECT_EQ(judge(kJoint, next(0.5)), LimitVerdict::kRate);
+  limits[kJoint].max_rate = 1.0;
+  limits_ = MachineLimits(limits, {}, settings_);
+  history(kJoint, 1.0, 30);
+  position_[kJoint] = 0.75;
+  EXPECT_EQ(judge(kJoint, 0.5), LimitVerdict::kOk) << "sqrt(2 * 0.5 * 0.25)";
+  EXPECT_EQ(judge(kJoint, next(0.5)), LimitVerdict::kSoftStop);
+  position_[kJoint] = 0.0;
+  settings_.acceleration_factor = settings_.window_factor = 1000.0;
+  limits[kJoint] = {-1e6, 1e6, 5.0, 0.125};
+  limits_ = MachineLimits(limits, {}, settings_);
+  history(kJoint, 0.25, 30);
+  EXPECT_EQ(judge(kJoint, 0.25 + 1.25), LimitVerdict::kOk) << "1000 * 0.125 * 0.01 = 1.25";
+  EXPECT_EQ(judge(kJoint, next(1.5)), LimitVerdict::kRateChange);
+}
+
 TEST_F(MachineLimitsTest, WheelsMayChangeByTheirCorrectionsAtOnce) {
   history(kWheel, 0.5, 30);
   EXPECT_EQ(judge(kWheel, 0.64), LimitVerdict::kOk);
@@ -222,16 +299,18 @@ TEST_F(MachineLimitsTest, OneJointOutOfFiveIsEnough) {
 }
 
 TEST(IsNeutral, AsksAboutActiveJointsOnly) {
-  ZoneCommand command;
-  EXPECT_TRUE(is_neutral(command, 0.005));
-  command.rate[2] = 0.3;
-  EXPECT_TRUE(is_neutral(command, 0.005)) << "not active";
-  command.active[2] = true;
-  EXPECT_FALSE(is_neutral(command, 0.005));
-  command.rate[2] = -0.005;
-  EXPECT_TRUE(is_neutral(command, 0.005));
-  command.rate[2] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(is_neutral(command, 0.005));
+  for (std::size_t joint = 0; joint < kMaxZoneJoints; ++joint) {
+    ZoneCommand command;
+    EXPECT_TRUE(is_neutral(command, 0.005));
+    command.rate[joint] = 0.3;
+    EXPECT_TRUE(is_neutral(command, 0.005)) << "not active";
+    command.active[joint] = true;
+    EXPECT_FALSE(is_neutral(command, 0.005));
+    command.rate[joint] = -0.005;
+    EXPECT_TRUE(is_neutral(command, 0.005));
+    command.rate[joint] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(is_neutral(command, 0.005));
+  }
 }
 
 }  // namespace

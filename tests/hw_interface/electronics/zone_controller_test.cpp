@@ -86,7 +86,7 @@ TEST_F(ZoneControllerTest, AHoldingWheelRampsDownThenLatches) {
   double before = 1.0;
   int periods = 0;
   while (hold().wheel_rate[kWheel] > 0.0) {
-    EXPECT_NEAR(before - controller_.output().wheel_rate[kWheel], 0.1, 1e-9);
+    EXPECT_NEAR(before - controller_.output().wheel_rate[kWheel], std::min(0.3, before), 1e-9);
     EXPECT_FALSE(controller_.output().brake[kWheel]);
     before = controller_.output().wheel_rate[kWheel];
     ASSERT_LE(++periods, 10);
@@ -96,7 +96,7 @@ TEST_F(ZoneControllerTest, AHoldingWheelRampsDownThenLatches) {
   position_[kWheel] = 2.0;
   EXPECT_TRUE(hold().brake[kWheel]);
   position_[kWheel] = 2.01;
-  EXPECT_NEAR(hold().wheel_rate[kWheel], -0.02, 1e-12) << "back to the angle it stood at";
+  EXPECT_NEAR(hold().wheel_rate[kWheel], -0.2, 1e-12) << "back to the angle it stood at";
   EXPECT_FALSE(ask(kWheel, 0.5).brake[kWheel]);
   EXPECT_EQ(controller_.output().wheel_rate[kWheel], 0.5);
 }
@@ -107,7 +107,7 @@ TEST_F(ZoneControllerTest, ALatchedWheelDoesNotMindTheWrapOfItsAngle) {
   hold();
   ASSERT_TRUE(controller_.output().brake[kWheel]);
   position_[kWheel] = -std::numbers::pi + 0.001;
-  EXPECT_NEAR(hold().wheel_rate[kWheel], -0.004, 1e-9);
+  EXPECT_NEAR(hold().wheel_rate[kWheel], -0.04, 1e-9);
 }
 
 TEST_F(ZoneControllerTest, AWheelOfWhichNothingIsAskedIsLatchedToo) {

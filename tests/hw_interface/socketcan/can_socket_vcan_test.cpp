@@ -154,6 +154,16 @@ TEST_F(CanSocketOnVcan, ADeletedInterfaceIsGoneUntilItIsThereAgainAndReopened) {
   EXPECT_EQ(receive_soon(b, heard_), SocketStatus::kOk);
 }
 
+TEST_F(CanSocketOnVcan, AReceiverLearnsOfADeletedInterfaceThatASenderWasToldOfFirst) {
+  CanSocket a = open(kName);
+  run("ip link del wexcan0");
+  EXPECT_EQ(a.send(frame_of(1)), SocketStatus::kGone);
+  create(kName);
+  EXPECT_EQ(a.receive(heard_), SocketStatus::kGone) << "the old socket stays deaf";
+  ASSERT_EQ(a.reopen(), SocketStatus::kOk);
+  EXPECT_EQ(a.receive(heard_), SocketStatus::kWouldBlock);
+}
+
 TEST_F(CanSocketOnVcan, APurgeTakesTheLinkDownAndUp) {
   CanSocket a = open(kName), b = open(kName);
   EXPECT_TRUE(a.purge());

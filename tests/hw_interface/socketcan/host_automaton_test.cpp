@@ -497,6 +497,18 @@ TEST_F(HostAutomaton, AResetThatTheMachineDoesNotFollowIsForgotten) {
   EXPECT_EQ(state_.phase, HostPhase::kFault);
 }
 
+TEST_F(HostAutomaton, AnOperatorsStopIsToldFromAnOpenChain) {
+  activate();
+  in_.mode = MachineMode::kEStop;
+  in_.operator_stopped = true;
+  step();
+  EXPECT_EQ(state_.phase, HostPhase::kEStop);
+  EXPECT_EQ(state_.cause, HostCause::kOperatorStop);
+  in_.estop_open = true;
+  EXPECT_EQ(advance(HostState{}, in_, times_).cause, HostCause::kEStopOpen)
+      << "the chain says more";
+}
+
 TEST_F(HostAutomaton, TheEStopIsLatchedAndWinsOverEverything) {
   for (const bool by_chain : {true, false}) {
     activate();

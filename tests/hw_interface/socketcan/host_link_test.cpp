@@ -51,7 +51,12 @@ class ScriptedPort final : public FramePort {
 
 class HostLinkTest : public ::testing::Test {
  protected:
-  void receive() { link_.receive(feedback_, now_ns_); }
+  void receive() {
+    for (bool more = true; more;) {
+      more = link_.collect();
+      link_.receive(feedback_, now_ns_);
+    }
+  }
   /// One period with a heartbeat and a stop in the mailbox.
   void cycle() {
     EXPECT_TRUE(link_.mailbox().put(HostMailbox::kStop, HostStop{true, 1}, 0));

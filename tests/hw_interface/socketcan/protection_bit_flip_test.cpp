@@ -66,6 +66,7 @@ TEST(BitFlips, AllOneAndTwoBitFlipsOfEveryFrameAreDetected) {
 }
 
 TEST(BitFlips, AllThreeBitFlipsOfEightByteFramesAreDetected) {
+  long all_tried = 0, all_undetected = 0;
   for (Sample& sample : samples()) {
     if (sample.frame.length != 8) continue;
     int tried = 0, undetected = 0;
@@ -81,13 +82,18 @@ TEST(BitFlips, AllThreeBitFlipsOfEightByteFramesAreDetected) {
     }
     EXPECT_EQ(tried, 41664);
     EXPECT_EQ(undetected, 0) << sample.name;
+    all_tried += tried;
+    all_undetected += undetected;
   }
+  std::cout << all_tried << " of three in 8 bytes, " << all_undetected << " undetected\n";
 }
 
 // The CRC is linear: a pattern of flips goes unseen exactly if the changes that its bits make to
 // "CRC computed xor CRC sent" cancel. Three cancel if the third is the xor of the first two, which
 // is looked up for all pairs: the same as trying all patterns (9,363,584 for 48 bytes).
 TEST(BitFlips, AllThreeBitFlipsOfLongerFramesAreDetected) {
+  std::size_t covered = 0;
+  long all_undetected = 0;
   for (Sample& sample : samples()) {
     const MessageRow& row = *row_of(sample.frame.id);
     const auto disagreement = [&] {
@@ -110,7 +116,11 @@ TEST(BitFlips, AllThreeBitFlipsOfLongerFramesAreDetected) {
       }
     }
     EXPECT_EQ(undetected, 0) << sample.name;
+    all_undetected += undetected;
+    covered += change.size() * (change.size() - 1) * (change.size() - 2) / 6;
   }
+  std::cout << covered << " of three in 8 to 48 bytes by the CRC's linearity, " << all_undetected
+            << " undetected\n";
 }
 
 TEST(Protection, NoFrameIsAcceptedUnderAnotherId) {

@@ -88,6 +88,38 @@ TEST(SequenceCheck, JudgesEveryStepFromEveryCounter) {
   }
 }
 
+TEST(SequenceCheck, AJumpThatTimeExplainsIsALoss) {
+  for (int missing = 0; missing < 200; ++missing) {
+    for (int delta = 1; delta < 256; ++delta) {
+      SequenceCheck check = started_at(250);
+      const auto counter = static_cast<std::uint8_t>(250 + delta);
+      // Half of the circle is the past, however long the silence was.
+      const bool loss = delta <= std::min(3 + missing, 127);
+      const SequenceVerdict expected = !loss        ? SequenceVerdict::kWrongSequence
+                                       : delta == 1 ? SequenceVerdict::kOk
+                                                    : SequenceVerdict::kLostSome;
+      ASSERT_EQ(check.update(counter, missing), expected) << missing << " " << delta;
+      ASSERT_EQ(check.trusted(), loss);
+      ASSERT_EQ(check.lost_frames(), loss ? delta - 1 : 0);
+    }
+  }
+  EXPECT_EQ(started_at(7).update(7, 100), SequenceVerdict::kRepeated);
+  EXPECT_EQ(started_at(7).update(11, -5), SequenceVerdict::kWrongSequence);
+}
+
+TEST(SequenceCheck, CountsTheFramesThatWereDueAndDidNotCome) {
+  EXPECT_EQ(SequenceCheck::missing_after(10.0, 10.0), 0);
+  EXPECT_EQ(SequenceCheck::missing_after(19.4, 10.0), 0);
+  EXPECT_EQ(SequenceCheck::missing_after(19.6, 10.0), 1) << "stamps are whole milliseconds";
+  EXPECT_EQ(SequenceCheck::missing_after(50.0, 10.0), 4);
+  EXPECT_EQ(SequenceCheck::missing_after(100.0, 20.0), 4);
+  EXPECT_EQ(SequenceCheck::missing_after(0.0, 10.0), 0);
+  EXPECT_EQ(SequenceCheck::missing_after(-30.0, 10.0), 0);
+  EXPECT_EQ(SequenceCheck::missing_after(1e12, 10.0), 254);
+  EXPECT_EQ(SequenceCheck::missing_after(1000.0, 0.0), 0) << "sent upon events only";
+  EXPECT_EQ(SequenceCheck::missing_after(std::nan(""), 10.0), 0);
+}
+
 TEST(SequenceCheck, TrustsNothingBeforeTheFirstFrame) {
   SequenceCheck check({});
   EXPECT_FALSE(check.trusted());

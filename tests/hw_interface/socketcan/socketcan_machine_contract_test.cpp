@@ -118,6 +118,7 @@ TEST(SocketCanMachineContract, ControlRateCallsDoNotAllocate) {
        now_ns += 10'000'000) {
     port.end += kFramesPerCycle;
     if (session.automaton().phase == HostPhase::kInactive) session.request_enable();
+    static_cast<void>(session.collect());
     session.cycle(now_ns);
     session.send_lock_step(1);
     session.write(command);

@@ -444,6 +444,42 @@ TEST_P(SocketCanMachineTest, CountsWhatIsOnTheBus) {
   RecordProperty("bus_load", std::to_string(s.bus_load));
 }
 
+/// Reading takes time, in which the machine goes on sending.
+class SlowPort final : public FramePort {
+ public:
+  SlowPort(HostBench& bench, double read_s) : bench_(bench), read_s_(read_s) {}
+  SocketStatus send(const CanFrame& frame) noexcept override { return bench_.port.send(frame); }
+  SocketStatus receive(CanFrame& frame) noexcept override {
+    bench_.pipe.host().on_wait(read_s_);
+    return bench_.port.receive(frame);
+  }
+  SocketStatus wait_readable(double timeout_s) noexcept override {
+    return bench_.port.wait_readable(timeout_s);
+  }
+  SocketStatus reopen() noexcept override { return bench_.port.reopen(); }
+  bool purge() noexcept override { return bench_.port.purge(); }
+  std::uint32_t dropped() const noexcept override { return bench_.port.dropped(); }
+
+ private:
+  HostBench& bench_;
+  double read_s_;
+};
+
+TEST(SocketCanMachineClock, FramesThatComeWhileALongQueueIsReadDoNotAgeTheFeedback) {
+  HostBench bench(false);
+  SlowPort port(bench, 50e-6);
+  const auto opened = SocketCanMachine::open_on(port, bench.clock, bench_machine(), {0.0, 0.0});
+  ASSERT_TRUE(opened) << opened.error().message;
+  SocketCanMachine& host = **opened;
+  for (int i = 0; i < 5000; ++i) bench.pipe.host().on_wait(1e-3);  // the program is busy
+  EXPECT_LE(host.read().age_s, 0.021);
+  const auto activated = host.activate();
+  ASSERT_TRUE(activated) << activated.error().message;
+  host.wait_until(host.read().t_s + 1.0);
+  EXPECT_EQ(host.phase(), HostPhase::kActive);
+  EXPECT_LE(host.statistics().max_feedback_age_s, 0.021);
+}
+
 TEST(SocketCanMachineOpen, SaysWhenNothingIsHeard) {
   HostBench bench(false);
   bench.far.set_frozen(true);

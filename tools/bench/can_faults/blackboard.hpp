@@ -39,8 +39,9 @@ class Trace {
 /// The machine after one period of 10 ms.
 struct MachineSample {
   std::int64_t time_ns = 0;
-  std::int64_t accepted_ns = 0;  ///< when the last ZoneCommand was accepted
+  std::int64_t commanded_ns = 0;  ///< when the last ZoneCommand was put in force
   can::MachineMode mode = {};
+  float turn_rad_s = 0.0F;         ///< of the joint that is driven, with its sign
   float fastest_joint = 0.0F;      ///< rad/s or m/s, all joints but the wheels
   float fastest_wheel_m_s = 0.0F;  ///< at the circumference
   std::array<float, 3> p_base_bucket_m{};
@@ -73,14 +74,14 @@ struct Blackboard {
   std::atomic<int> activations;  ///< the host activates once for every increment, never by itself
   std::atomic<Motion> motion;
   std::atomic<int> muted_zone;  ///< 1 + the zone whose feedback is lost on the way; 0: none
-  std::atomic<std::int64_t> last_muted_zone_feedback_ns;  ///< the last one that was sent
+  std::atomic<std::int64_t> last_arm_sample_ns;  ///< the last one of zone 4 that was sent
 
   // What the others say.
   std::atomic<bool> host_connected, machine_runs;
   std::atomic<int> activations_done;
   std::atomic<std::int64_t> estop_reported_ns;  ///< first report of an open chain; 0: none
   can::BusStatistics statistics;                ///< the host's, of its last cycle
-  std::atomic<long> host_resident_kb;
+  std::atomic<long> host_resident_kb, machine_resident_kb;
   Trace<MachineSample, 250'000> machine;  ///< 40 minutes
   Trace<HostSample, 250'000> host;
   Trace<CommandRecord, 100'000> sent, received;  ///< the first 160 s

@@ -19,23 +19,46 @@ double ms_between(std::int64_t from_ns, std::int64_t to_ns) {
   return static_cast<double>(to_ns - from_ns) / kMillisecond_ns;
 }
 
+constexpr double kPeriod_ms = 10.0;
+
+/// How late each record is after the one before, at most, among those that end within the time.
+template <typename Records>
+double longest_delay_ms(const Records& records, std::int64_t begin_ns, std::int64_t end_ns) {
+  double longest_ms = 0.0;
+  for (std::size_t i = records.size(); i-- > 1 && records[i].time_ns >= begin_ns;) {
+    if (records[i - 1].time_ns > end_ns) continue;
+    const double delay_ms = ms_between(records[i - 1].time_ns, records[i].time_ns) - kPeriod_ms;
+    longest_ms = std::max(longest_ms, delay_ms);
+  }
+  return longest_ms;
+}
+
 /// Tells driven motion from the swing after it, sample by sample.
 class MotionWatch {
  public:
-  /// Milliseconds since the last accepted command if a joint is driven, else 0.
-  double update(const MachineSample& sample) {
-    const double since_ms = ms_between(sample.accepted_ns, sample.time_ns);
-    if (sample.accepted_ns != accepted_ns_) stood_ = false;
-    accepted_ns_ = sample.accepted_ns;
-    if (sample.fastest_joint <= kStanding) {
-      stood_ = true;
-      return 0.0;
+  /// Time since the last command in force if a joint is driven, else zeros.
+  Motion_ms update(const MachineSample& sample) {
+    if (sample.commanded_ns != commanded_ns_) {
+      stood_ = false;
+      late_ms_ = 0.0;
     }
-    return stood_ && since_ms <= kSwing_ms ? 0.0 : since_ms;
+    if (time_ns_ != 0 && time_ns_ >= sample.commanded_ns) {
+      late_ms_ += std::max(ms_between(time_ns_, sample.time_ns) - kPeriod_ms, 0.0);
+    }
+    commanded_ns_ = sample.commanded_ns;
+    time_ns_ = sample.time_ns;
+    const double since_ms = ms_between(sample.commanded_ns, sample.time_ns);
+    const bool turned_back = sample.turn_rad_s * turn_rad_s_ < 0.0F;  // stood between two samples
+    turn_rad_s_ = sample.turn_rad_s;
+    stood_ = stood_ || turned_back || sample.fastest_joint <= kStanding;
+    if (sample.fastest_joint <= kStanding) return {};
+    return stood_ && since_ms <= kSwing_ms ? Motion_ms{} : Motion_ms{since_ms, late_ms_};
   }
 
  private:
-  std::int64_t accepted_ns_ = 0;
+  std::int64_t commanded_ns_ = 0, time_ns_ = 0;
+  double late_ms_ = 0.0;
+  float turn_rad_s_ = 0.0F;
   bool stood_ = false;
 };
 
@@ -64,6 +87,11 @@ double percentile(std::vector<double>& values, double p) {
   return values[rank];
 }
 
+double lateness_ms(const Blackboard& board, std::int64_t begin_ns, std::int64_t end_ns) {
+  return std::max(longest_delay_ms(board.machine, begin_ns, end_ns),
+                  longest_delay_ms(board.host, begin_ns, end_ns));
+}
+
 StopFigures stop_figures(const Blackboard& board, std::int64_t until_ns) {
   StopFigures figures;
   std::int64_t last_ns = 0;
@@ -80,7 +108,12 @@ StopFigures stop_figures(const Blackboard& board, std::int64_t until_ns) {
   for (const MachineSample* s = begin; s != end; ++s) {
     const double since_ms = ms_between(last_ns, s->time_ns);
     if (s->mode == can::MachineMode::kEnabled) figures.hold_ms = since_ms;
-    figures.joints_ms = std::max(figures.joints_ms, watch.update(*s));
+    const Motion_ms motion = watch.update(*s);
+    if (motion.driven > figures.joints_ms) figures.joints_ms = motion.driven;
+    if (s != begin &&
+        std::max(figures.joints_ms, figures.wheels_ms) + 2.0 * kPeriod_ms > since_ms) {
+      figures.late_ms += std::max(ms_between(s[-1].time_ns, s->time_ns) - kPeriod_ms, 0.0);
+    }
     figures.base_m += kPeriod_s * static_cast<double>(s->fastest_wheel_m_s);
     if (s->fastest_wheel_m_s > kStanding) figures.wheels_ms = since_ms;
     const auto p = s->p_base_bucket_m;
@@ -92,14 +125,40 @@ StopFigures stop_figures(const Blackboard& board, std::int64_t until_ns) {
   return figures;
 }
 
-double longest_motion_without_command_ms(const Blackboard& board, std::int64_t begin_ns) {
-  double longest_ms = 0.0;
+Motion_ms longest_motion_without_command(const Blackboard& board, std::int64_t begin_ns) {
+  Motion_ms longest;
   MotionWatch watch;
   for (const MachineSample& sample : board.machine) {
-    const double driven_ms = watch.update(sample);
-    if (sample.time_ns >= begin_ns) longest_ms = std::max(longest_ms, driven_ms);
+    const Motion_ms motion = watch.update(sample);
+    if (sample.time_ns >= begin_ns && motion.by_itself() > longest.by_itself()) longest = motion;
   }
-  return longest_ms;
+  return longest;
+}
+
+int unexcused_holds(const Blackboard& board, std::int64_t begin_ns) {
+  constexpr double kExcuse_ms = 30.0;
+  constexpr std::int64_t kBefore_ns = 150'000'000;
+  int count = 0;
+  for (std::size_t i = 1; i < board.machine.size(); ++i) {
+    const std::int64_t time_ns = board.machine[i].time_ns;
+    const bool begins = board.machine[i].mode == can::MachineMode::kHold &&
+                        board.machine[i - 1].mode != can::MachineMode::kHold;
+    if (!begins || time_ns < begin_ns) continue;
+    count += lateness_ms(board, time_ns - kBefore_ns, time_ns) < kExcuse_ms;
+  }
+  return count;
+}
+
+double enabled_s(const Blackboard& board, std::int64_t begin_ns) {
+  double sum_ms = 0.0;
+  for (std::size_t i = 1; i < board.machine.size(); ++i) {
+    if (board.machine[i].time_ns < begin_ns ||
+        board.machine[i].mode != can::MachineMode::kEnabled) {
+      continue;
+    }
+    sum_ms += ms_between(board.machine[i - 1].time_ns, board.machine[i].time_ns);
+  }
+  return 1e-3 * sum_ms;
 }
 
 int entries(const Blackboard& board, can::MachineMode mode, std::int64_t begin_ns) {
@@ -123,6 +182,7 @@ CommandCheck check_commands(const Blackboard& board, std::int64_t begin_ns) {
   constexpr std::int64_t kSettled_ns = 50'000'000;
   can::SystemClock clock;
   const std::int64_t end_ns = clock.now_ns() - kSettled_ns;
+  check.late_ms = longest_delay_ms(board.machine, begin_ns, end_ns);
   struct Sent {
     std::int64_t time_ns = 0;
     bool accepted = false;

@@ -56,6 +56,8 @@ class Observer {
 
   MachineSample sample(const can::PlantState& state) {
     MachineSample sample;
+    const int turn = machine_.arm->coordinates[0] - kNumBaseCoordinates;
+    sample.turn_rad_s = static_cast<float>(state.rate[turn]);
     q_.setZero();  // the bucket as seen from the base
     for (int j = 0; j < machine_.num_joints(); ++j) {
       q_[kNumBaseCoordinates + j] = state.position[j];
@@ -147,15 +149,16 @@ int run_machine(Scene& scene, const std::string& interface_name, Blackboard& boa
 
   // What became of a command shows in the counters when the next frame is asked for.
   CommandRecord pending;
-  long good_before = 0;
-  std::int64_t accepted_ns = 0;
+  long good_before = 0, in_force_before = 0;
+  std::int64_t commanded_ns = 0;
   port.before_receive = [&] {
     if (pending.time_ns == 0) return;
     const long good =
         electronics.counters().commands_accepted + electronics.counters().commands_bumpless;
     pending.accepted = good > good_before;
     good_before = good;
-    if (pending.accepted) accepted_ns = pending.time_ns;
+    if (electronics.counters().commands_accepted > in_force_before) commanded_ns = pending.time_ns;
+    in_force_before = electronics.counters().commands_accepted;
     board.received.append(pending);
     pending.time_ns = 0;
   };
@@ -168,8 +171,12 @@ int run_machine(Scene& scene, const std::string& interface_name, Blackboard& boa
            can::zone_of(frame) != muted - 1;
   };
   port.on_sent = [&](const can::CanFrame& frame) {
-    if (can::kind_of(frame) == can::MessageKind::kZoneFeedback && can::zone_of(frame) == 4) {
-      board.last_muted_zone_feedback_ns = clock.now_ns();
+    can::ZoneFeedback feedback;
+    if (can::kind_of(frame) == can::MessageKind::kZoneFeedback && can::zone_of(frame) == 4 &&
+        can::decode(frame, 0, feedback)) {
+      const std::int64_t now_ms = clock.now_ns() / kMillisecond_ns;  // the stamp has 32 bits of it
+      const auto age_ms = static_cast<std::uint32_t>(now_ms) - feedback.sample_time_ms;
+      board.last_arm_sample_ns = (now_ms - age_ms) * kMillisecond_ns;
     }
     can::EStopState estop;
     if (can::kind_of(frame) == can::MessageKind::kEStopState && can::decode(frame, 0, estop) &&
@@ -199,9 +206,10 @@ int run_machine(Scene& scene, const std::string& interface_name, Blackboard& boa
     electronics.tick(clock.now_ns() / kMillisecond_ns);
     MachineSample sample = observer.sample(electronics.plant_state());
     sample.time_ns = clock.now_ns();
-    sample.accepted_ns = accepted_ns;
+    sample.commanded_ns = commanded_ns;
     sample.mode = electronics.automaton().mode();
     board.machine.append(sample);
+    if (board.machine.size() % 100 == 0) board.machine_resident_kb = resident_kb();
     board.machine_runs = true;
   }
   return 0;

@@ -92,6 +92,7 @@ Rig::Rig(Scene& scene, const HostOptions& options)
 Rig::~Rig() {
   board_->end_host = board_->end_machine = true;
   if (host_ > 0) kill(host_, SIGCONT);
+  if (machine_ > 0) kill(machine_, SIGCONT);
   end(host_);
   end(machine_);
 }
@@ -119,6 +120,8 @@ void Rig::signal_host(int signal) {
   if (signal == SIGKILL) reap(host_);
 }
 
+void Rig::signal_machine(int signal) { kill(machine_, signal); }
+
 can::MachineMode Rig::mode() const {
   const std::size_t n = board_->machine.size();
   return n == 0 ? can::MachineMode::kInit : board_->machine[n - 1].mode;
@@ -143,6 +146,15 @@ void Rig::drive(Motion motion) {
   enable();
   board_->motion = motion;
   sleep_s(1.5);
+  if (motion == Motion::kSteady) wait_for_motion();
+}
+
+double Rig::wait_for_motion() {
+  constexpr float kUnderWay = 0.05F;
+  const auto speed = [&] { return board_->machine[board_->machine.size() - 1].fastest_joint; };
+  static_cast<void>(
+      wait_for(10.0, [&] { return mode() == can::MachineMode::kEnabled && speed() > kUnderWay; }));
+  return speed();
 }
 
 void Rig::operator_does(can::OperatorAction action) {

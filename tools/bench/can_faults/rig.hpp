@@ -32,6 +32,9 @@ class Rig {
   void enable();
   /// Enabled and moving steadily (or as a sine), for long enough to be at speed.
   void drive(Motion motion = Motion::kSteady);
+  /// Speed of the fastest joint [rad/s, m/s] once it is well under way, at most 10 s later: on a
+  /// loaded machine false holds begin it anew.
+  double wait_for_motion();
   /// The operator's terminal: at first nothing, then the reset. A rising edge.
   void operator_reset();
   /// One frame of the operator's terminal.
@@ -40,6 +43,7 @@ class Rig {
   void end_host();
   void kill_machine();
   void signal_host(int signal);
+  void signal_machine(int signal);
 
   [[nodiscard]] Blackboard& board() { return *board_; }
   [[nodiscard]] pid_t host() const { return host_; }

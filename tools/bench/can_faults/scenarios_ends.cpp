@@ -16,6 +16,7 @@ namespace wex::can_faults {
 namespace {
 
 constexpr double kMaxMotion_ms = 150.0;
+constexpr double kTolerance_ms = 25.0;  ///< of times in User-Mode Linux
 
 long open_files(pid_t pid) {
   const std::filesystem::path folder = "/proc/" + std::to_string(pid) + "/fd";
@@ -48,7 +49,7 @@ void flap(Scene& scene, const std::string& what, const std::string& down, const 
     }
     reconnect_s.push_back(1e-9 * static_cast<double>(now_ns() - up_ns));
   }
-  const double motion_ms = longest_motion_without_command_ms(rig.board(), begin_ns);
+  const Motion_ms motion = longest_motion_without_command(rig.board(), begin_ns);
   const std::int64_t first_hold_ns = [&] {
     for (const MachineSample& sample : rig.board().machine) {
       if (sample.time_ns > begin_ns && sample.mode != can::MachineMode::kEnabled) {
@@ -69,20 +70,22 @@ void flap(Scene& scene, const std::string& what, const std::string& down, const 
       "T11", text("%s, %d times", what.c_str(), cycles),
       text("heard again after p50 %.2f, p99 %.2f s; files left open %ld; enabled by itself "
            "%d times; moved %.0f ms after the last command; enabled again when asked",
-           percentile(reconnect_s, 0.5), p99_s, files_more, enabled, motion_ms),
+           percentile(reconnect_s, 0.5), p99_s, files_more, enabled, motion.driven),
       "p99 < 2 s, 0 files, 0 times, <= 150 ms",
-      p99_s < 2.0 && files_more <= 0 && enabled == 0 && motion_ms <= kMaxMotion_ms);
+      p99_s < 2.0 && files_more <= 0 && enabled == 0 && motion.by_itself() <= kMaxMotion_ms);
 }
 
 void print_stop(const char* what, const StopFigures& figures, bool resumed) {
-  print_figure("T12", what,
-               text("last good command -> hold %.0f ms, joints stand %.0f ms (bucket %.3f m on), "
-                    "wheels ramped down %.0f ms (%.2f m on); moved again by itself: %s",
-                    figures.hold_ms, figures.joints_ms, figures.bucket_m, figures.wheels_ms,
-                    figures.base_m, resumed ? "yes" : "no"),
-               "stand <= 150 ms",
-               figures.stood && !resumed && figures.joints_ms > 0.0 &&
-                   figures.joints_ms <= kMaxMotion_ms && figures.wheels_ms <= kMaxMotion_ms);
+  print_figure(
+      "T12", what,
+      text("last good command -> hold %.0f ms, joints stand %.0f ms (bucket %.3f m on), "
+           "wheels ramped down %.0f ms (%.2f m on); moved again by itself: %s; periods late by "
+           "%.0f ms meanwhile",
+           figures.hold_ms, figures.joints_ms, figures.bucket_m, figures.wheels_ms, figures.base_m,
+           resumed ? "yes" : "no", figures.late_ms),
+      "stand <= 150 ms + what periods were late",
+      figures.stood && !resumed && figures.joints_ms > 0.0 &&
+          std::max(figures.joints_ms, figures.wheels_ms) <= kMaxMotion_ms + figures.late_ms);
 }
 
 void kill_host(Scene& scene) {
@@ -121,11 +124,45 @@ void kill_machine(Scene& scene) {
       fault_ms = 1e-6 * static_cast<double>(sample.time_ns - killed_ns);
     }
   }
-  print_figure("T12", "machine's electronics killed while driving",
-               text("host in fault after %.0f ms, stays there: %s", fault_ms,
-                    rig.lifecycle() == Lifecycle::kFault ? "yes" : "no"),
-               "<= 250 ms, latched",
-               fault_ms >= 0.0 && fault_ms <= 250.0 && rig.lifecycle() == Lifecycle::kFault);
+  const double host_late_ms = lateness_ms(board, killed_ns, killed_ns + 300'000'000);
+  print_figure(
+      "T12", "machine's electronics killed (kill -9) while driving",
+      text("host in fault after %.0f ms, stays there: %s", fault_ms,
+           rig.lifecycle() == Lifecycle::kFault ? "yes" : "no"),
+      "<= 250 ms (+ late), latched",
+      fault_ms >= 0.0 && fault_ms <= 250.0 + host_late_ms && rig.lifecycle() == Lifecycle::kFault);
+}
+
+/// The electronics' processor stands still for a second, then works on where it was, with a second
+/// of commands waiting. The simulated plant stands still with it: its own periods count.
+void freeze_machine(Scene& scene) {
+  Rig rig(scene);
+  rig.drive();
+  const std::int64_t frozen_ns = now_ns();
+  rig.signal_machine(SIGSTOP);
+  sleep_s(1.0);
+  const auto at = static_cast<std::ptrdiff_t>(rig.board().machine.size());
+  const std::int64_t continued_ns = now_ns();
+  rig.signal_machine(SIGCONT);
+  sleep_s(1.0);
+  const Blackboard& board = rig.board();
+  const auto stands_at = std::find_if(
+      board.machine.begin() + at, board.machine.end(), [](const MachineSample& sample) {
+        return std::max(sample.fastest_joint, sample.fastest_wheel_m_s) <= kStanding;
+      });
+  const auto moving_ms = 10.0 * static_cast<double>(stands_at - board.machine.begin() - at);
+  const CommandCheck check = check_commands(board, frozen_ns);
+  const bool resumed = entries(board, can::MachineMode::kEnabled, continued_ns) > 0;
+  const bool stands = board.machine[board.machine.size() - 1].fastest_joint <= kStanding;
+  print_figure(
+      "T12", "machine's electronics frozen (SIGSTOP) for 1 s while driving, then continued",
+      text("%ld commands waited, %ld older than 100 ms accepted; moved on for %.0f ms; host in "
+           "fault: %s; moved again by itself: %s",
+           check.old_received, check.old_accepted, moving_ms,
+           rig.lifecycle() == Lifecycle::kFault ? "yes" : "no", resumed ? "yes" : "no"),
+      "0 old accepted, <= 150 ms, fault latched",
+      check.old_received > 0 && check.old_accepted == 0 && moving_ms <= kMaxMotion_ms && stands &&
+          !resumed && rig.lifecycle() == Lifecycle::kFault);
 }
 
 }  // namespace
@@ -143,12 +180,12 @@ void end_processes(Scene& scene, bool) {
   kill_host(scene);
   freeze_host(scene);
   kill_machine(scene);
+  freeze_machine(scene);
 }
 
 void open_the_estop(Scene& scene, bool full) {
-  // Tolerances are for User-Mode Linux, where the frames of one period take milliseconds.
-  const int times = full ? 1000 : 8;
-  std::vector<double> reported_ms, silent_ms, stood_ms;
+  const int times = full ? 1000 : 20;
+  std::vector<double> reported_ms, silent_ms, stood_ms, late_ms, speed;
   int not_latched = 0, left_without_edge = 0;
   std::mt19937 random(1);  // NOLINT(cert-msc51-cpp): repeatable on purpose
   std::uniform_real_distribution<double> phase_s(0.0, 0.02);
@@ -157,25 +194,28 @@ void open_the_estop(Scene& scene, bool full) {
     for (int i = 0; i < 50 && begun < times; ++i, ++begun) {
       rig.board().motion = Motion::kSteady;
       rig.enable();
+      speed.push_back(rig.wait_for_motion());
       // At a moment that no process of ours wakes up for: the only core is asleep or at work.
       const std::int64_t open_ns =
-          now_ns() + static_cast<std::int64_t>(1e9 * (0.6 + phase_s(random)));
+          now_ns() + static_cast<std::int64_t>(1e9 * (0.1 + phase_s(random)));
       rig.board().estop_reported_ns = 0;
       rig.board().estop_open_from_ns = open_ns;
-      sleep_s(1.0);
+      sleep_s(0.43);
       rig.board().estop_open_from_ns = 0;
-      sleep_s(0.05);
+      sleep_s(0.03);
       not_latched += rig.mode() != can::MachineMode::kEStop;
       rig.operator_does(can::OperatorAction::kReset);  // a level, not an edge
-      sleep_s(0.05);
+      sleep_s(0.03);
       left_without_edge += rig.mode() != can::MachineMode::kEStop;
-      rig.operator_reset();
-      sleep_s(0.3);
+      rig.operator_does(can::OperatorAction::kNone);
+      sleep_s(0.02);
+      rig.operator_does(can::OperatorAction::kReset);
 
       double silent = 0.0;
       for (const CommandRecord& command : rig.board().sent) {
         silent = std::max(silent, 1e-6 * static_cast<double>(command.time_ns - open_ns));
       }
+      late_ms.push_back(lateness_ms(rig.board(), open_ns, open_ns + 200'000'000));
       reported_ms.push_back(1e-6 * static_cast<double>(rig.board().estop_reported_ns - open_ns));
       silent_ms.push_back(silent);
       stood_ms.push_back(stop_figures(rig.board(), open_ns).joints_ms);
@@ -185,18 +225,29 @@ void open_the_estop(Scene& scene, bool full) {
       }
     }
   }
-  const auto row = [](const char* what, std::vector<double>& ms) {
+  const auto row = [](const char* what, std::vector<double> ms) {
     return text("%s p50 %.1f p99 %.1f max %.1f ms", what, percentile(ms, 0.5), percentile(ms, 0.99),
                 percentile(ms, 1.0));
   };
-  print_figure(
-      "T13", text("e-stop at random phase, %d times", times),
-      row("reported", reported_ms) + "; " + row("last command", silent_ms) + "; " +
-          row("stands", stood_ms) +
-          text("; not latched %d, left without an edge %d", not_latched, left_without_edge),
-      "reported <= 10 ms (+10), last command <= 20 ms (+5), latched, edge",
-      percentile(reported_ms, 0.0) >= 0.0 && percentile(reported_ms, 1.0) <= 20.0 &&
-          percentile(silent_ms, 1.0) <= 25.0 && not_latched + left_without_edge == 0);
+  double worst_report = 0.0, worst_silence = 0.0, worst_stop = 0.0;  // less what was late
+  for (std::size_t i = 0; i < late_ms.size(); ++i) {
+    worst_report = std::max(worst_report, reported_ms[i] - late_ms[i]);
+    worst_silence = std::max(worst_silence, silent_ms[i] - late_ms[i]);
+    worst_stop = std::max(worst_stop, stood_ms[i] - late_ms[i]);
+  }
+  const bool all_reported = *std::min_element(reported_ms.begin(), reported_ms.end()) >= 0.0;
+  const auto turned = std::count_if(speed.begin(), speed.end(),
+                                    [](double rad_s) { return rad_s > 2.0 * kStanding; });
+  print_figure("T13", text("e-stop at random phase on the bus, %d times", times),
+               row("reported", reported_ms) + "; " + row("last command", silent_ms) + "; " +
+                   row("stands", stood_ms) + "; " + row("periods late by", late_ms) +
+                   text("; not latched %d, left without an edge %d; turned before in %td",
+                        not_latched, left_without_edge, turned),
+               "reported <= 10 ms, last command <= 20 (both +25, + late), stands <= 150 (+ late), "
+               "latched, edge, 9 of 10 turned",
+               all_reported && 10 * turned >= 9 * times && worst_report <= 10.0 + kTolerance_ms &&
+                   worst_silence <= 20.0 + kTolerance_ms && worst_stop <= kMaxMotion_ms &&
+                   not_latched + left_without_edge == 0);
 }
 
 void soak(Scene& scene, bool full) {
@@ -204,26 +255,37 @@ void soak(Scene& scene, bool full) {
   Rig rig(scene);
   rig.drive(Motion::kSine);
   sleep_s(5.0);
-  const std::int64_t begin_ns = now_ns();
-  const long resident_kb = rig.board().host_resident_kb;
-  sleep_s(duration_s);
   const Blackboard& board = rig.board();
-  const can::BusStatistics& bus = board.statistics;
+  const std::int64_t begin_ns = now_ns();
+  const long host_kb = board.host_resident_kb, machine_kb = board.machine_resident_kb;
+  sleep_s(duration_s);
+  const can::BusStatistics bus = board.statistics;
   const int holds = entries(board, can::MachineMode::kHold, begin_ns);
   const bool enabled = rig.mode() == can::MachineMode::kEnabled;
-  const long growth_kb = board.host_resident_kb - resident_kb;
+  const long growth_kb =
+      std::max(board.host_resident_kb - host_kb, board.machine_resident_kb - machine_kb);
+  std::string bins;
+  for (int i = 0; i < can::LatencyHistogram::kNumBins; ++i) {
+    const bool last = i + 1 == can::LatencyHistogram::kNumBins;
+    const long count = bus.command_to_report.bins()[i];
+    if (count == 0) continue;
+    const double edge_ms = can::LatencyHistogram::kEdges_ms[last ? i - 1 : i];
+    bins += text(" %s%g: %ld", last ? ">" : "<", edge_ms, count);
+  }
   print_figure(
       "T18", text("soak, all joints at 100 Hz, %.0f s", duration_s),
       text(
           "%ld frames sent, %ld received, lost %ld, overflows %ld, holds %d; load %.0f %% (busiest "
-          "second %.0f %%) of 500k/2M; command to report p50 %.1f p99 %.1f max %.1f ms; memory "
-          "+%ld kB",
+          "second %.0f %%) of 500k/2M; command to report [ms]%s, max %.1f; memory +%ld kB; "
+          "periods late by %.0f ms at most",
           bus.frames_sent(), bus.frames_received(), bus.frames_lost(), bus.receive_overflows, holds,
-          100.0 * bus.bus_load, 100.0 * bus.max_bus_load, bus.command_to_report.percentile_ms(0.5),
-          bus.command_to_report.percentile_ms(0.99), bus.command_to_report.max_ms(), growth_kb),
-      "0 lost, 0 overflows, 0 holds, load <= 50 %, <= 60 %, <= 200 kB",
-      bus.frames_lost() == 0 && bus.receive_overflows == 0 && holds == 0 && enabled &&
-          bus.bus_load <= 0.50 && bus.max_bus_load <= 0.60 && growth_kb <= 200);
+          100.0 * bus.bus_load, 100.0 * bus.max_bus_load, bins.c_str(),
+          bus.command_to_report.max_ms(), growth_kb, lateness_ms(board, begin_ns, now_ns())),
+      "0 lost, 0 overflows, 0 holds (unless a process was late by 30 ms), load <= 50 %, <= 60 %, "
+      "<= 200 kB",
+      bus.frames_lost() == 0 && bus.receive_overflows == 0 &&
+          unexcused_holds(board, begin_ns) == 0 && (enabled || holds > 0) && bus.bus_load <= 0.50 &&
+          bus.max_bus_load <= 0.60 && growth_kb <= 200);
 }
 
 void jump_the_clock(Scene& scene, bool) {
@@ -242,8 +304,9 @@ void jump_the_clock(Scene& scene, bool) {
   const int holds = entries(rig.board(), can::MachineMode::kHold, begin_ns);
   const bool enabled = rig.mode() == can::MachineMode::kEnabled;
   print_figure("T22", "wall clock jumps by +-1 h four times while driving",
-               text("holds %d, still enabled: %s", holds, enabled ? "yes" : "no"), "0 holds",
-               holds == 0 && enabled);
+               text("holds %d, still enabled: %s", holds, enabled ? "yes" : "no"),
+               "0 holds (unless a process was late by 30 ms)",
+               unexcused_holds(rig.board(), begin_ns) == 0 && (enabled || holds > 0));
 }
 
 }  // namespace wex::can_faults

@@ -5,6 +5,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstring>
 #include <stdexcept>
@@ -201,7 +202,8 @@ void go_bus_off(Scene& scene, bool full) {
              rig.board().statistics.purges, resumed),
         lasts ? "hold <= 75 ms" : "hold <= 75 ms, never enabled by itself",
         adapter.reports() > 0 && rig.board().statistics.error_frames > 0 && hold_ns > begin_ns &&
-            hold_ms <= 75.0 && resumed == 0 && figures.joints_ms <= kMaxMotion_ms);
+            hold_ms <= 75.0 + figures.late_ms && resumed == 0 &&
+            figures.joints_ms <= kMaxMotion_ms + figures.late_ms);
   }
 }
 
@@ -218,6 +220,7 @@ void lose_one_zone(Scene& scene, bool full) {
   Rig rig(scene);
   rig.drive(Motion::kSine);
   std::vector<double> stale_ms;
+  double latest_ms = 0.0;  // less how late the host was
   for (int i = 0; i < times; ++i) {
     sleep_s(0.1 + 0.0013 * (i % 8));
     if (!wait_for(3.0, [&] {
@@ -230,7 +233,7 @@ void lose_one_zone(Scene& scene, bool full) {
     rig.board().muted_zone = 1 + 4;  // turntable and arm
     const std::size_t from = rig.board().host.size();
     sleep_s(0.045);
-    const std::int64_t silence_ns = rig.board().last_muted_zone_feedback_ns;  // ages count from it
+    const std::int64_t silence_ns = rig.board().last_arm_sample_ns;  // ages count from it
     rig.board().muted_zone = 0;
     sleep_s(0.03);
     double stale = -1.0;
@@ -239,13 +242,14 @@ void lose_one_zone(Scene& scene, bool full) {
       if (sample.turn_stale) stale = 1e-6 * static_cast<double>(sample.time_ns - silence_ns);
     }
     stale_ms.push_back(stale);
+    latest_ms =
+        std::max(latest_ms, stale - lateness_ms(rig.board(), silence_ns, silence_ns + 50'000'000));
   }
   print_figure(
       "T17", text("one zone's feedback lost for 45 ms, %d times", times),
       text("the planner sees STALE after p50 %.0f, min %.0f, max %.0f ms",
            percentile(stale_ms, 0.5), percentile(stale_ms, 0.0), percentile(stale_ms, 1.0)),
-      "30 ms +- a period (+2)",
-      percentile(stale_ms, 0.0) >= 20.0 && percentile(stale_ms, 1.0) <= 42.0);
+      "30 ms +- a period (+2, + late)", percentile(stale_ms, 0.0) >= 20.0 && latest_ms <= 42.0);
 }
 
 }  // namespace wex::can_faults
