@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <optional>
 
@@ -92,36 +93,59 @@ std::filesystem::path part_file(const InitializerBenchOptions& options, int job)
   return options.out / ("part_" + std::to_string(job) + ".csv");
 }
 
-/// Every `jobs`-th task in a process of its own: one that crashes spoils only its own rows.
+InitializerRow lost_row(const Work& work) {
+  InitializerRow row;
+  row.cell = work.cell->name;
+  row.seed = work.seed;
+  row.reason = "the process ended";
+  return row;
+}
+
+bool ended_well(pid_t pid) {
+  int status = 0;
+  waitpid(pid, &status, 0);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+/// In a process of its own: a task that crashes spoils only its own row.
+void run_task(const InitializerBenchOptions& options, const MachineModel& machine, const Work& work,
+              const std::filesystem::path& part_csv, const std::string& label, std::ostream& err) {
+  const pid_t pid = fork();
+  if (pid == 0) {
+    const InitializerRow row = planned(options, machine, work);
+    std::ofstream part(part_csv, std::ios::app);
+    part << csv_line(row) << std::flush;
+    err << label << row.cell << " seed " << row.seed
+        << (row.accepted ? ": accepted" : ": " + row.reason.substr(0, 160)) << std::endl;
+    _exit(part ? 0 : 1);
+  }
+  if (pid > 0 && ended_well(pid)) return;
+  std::ofstream(part_csv, std::ios::app) << csv_line(lost_row(work));
+  err << label << work.cell->name << " seed " << work.seed << ": the process ended" << std::endl;
+}
+
+/// Every `jobs`-th task is one worker's.
 Result<void> run_parts(const InitializerBenchOptions& options, const MachineModel& machine,
                        const std::vector<Work>& works, std::ostream& err) {
-  std::vector<pid_t> children;
+  std::vector<pid_t> workers;
   for (int job = 0; job < options.jobs; ++job) {
     err.flush();
     const pid_t pid = fork();
     if (pid < 0) return fail(ErrorCode::kInternal, "no process could be started for the benchmark");
     if (pid > 0) {
-      children.push_back(pid);
+      workers.push_back(pid);
       continue;
     }
-    std::ofstream part(part_file(options, job));
+    std::ofstream{part_file(options, job)};  // empties what an earlier run left
     for (std::size_t k = static_cast<std::size_t>(job); k < works.size();
          k += static_cast<std::size_t>(options.jobs)) {
-      const InitializerRow row = planned(options, machine, works[k]);
-      part << csv_line(row) << std::flush;
-      err << "[" << k + 1 << " of " << works.size() << "] " << row.cell << " seed " << row.seed
-          << (row.accepted ? ": accepted" : ": " + row.reason.substr(0, 160)) << std::endl;
+      char label[48];
+      std::snprintf(label, sizeof label, "[%zu of %zu] ", k + 1, works.size());
+      run_task(options, machine, works[k], part_file(options, job), label, err);
     }
-    part.flush();
-    _exit(part ? 0 : 1);
+    _exit(0);
   }
-  for (const pid_t pid : children) {
-    int status = 0;
-    waitpid(pid, &status, 0);
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-      err << "a process of the benchmark ended early; its remaining tasks count as failed\n";
-    }
-  }
+  for (const pid_t pid : workers) ended_well(pid);
   return {};
 }
 
@@ -181,11 +205,7 @@ Result<InitializerBenchOutcome> bench_initializer(const InitializerBenchOptions&
       return row.cell == work.cell->name && row.seed == work.seed;
     });
     if (is_there) continue;
-    InitializerRow lost;
-    lost.cell = work.cell->name;
-    lost.seed = work.seed;
-    lost.reason = "the process ended";
-    rows.push_back(lost);
+    rows.push_back(lost_row(work));
   }
   const auto place = [&](const InitializerRow& row) {
     return std::find_if(cells.begin(), cells.end(),

@@ -48,10 +48,16 @@ Eigen::VectorXd MotionBuilder::posture(const BaseRun::Point& point, const WheelP
   return q;
 }
 
-Footing MotionBuilder::footing(const BaseRun& run, std::size_t knot, std::uint8_t lifted) {
+Result<Footing, MotionFailure> MotionBuilder::footing(const BaseRun& run, std::size_t knot,
+                                                      std::uint8_t lifted) {
   const BaseRun::Point point{run.knots[knot].base, run.knots[knot].curvature_1_m};
   const auto placement = placed(point, lifted, run.lifted_hfe_rad);
-  WEX_EXPECTS(placement.has_value());  // judged with the runs on both sides
+  if (!placement) {
+    missed_ground_ = true;
+    return tl::unexpected<MotionFailure>(
+        {run.knots[knot].state,
+         name_of(static_cast<std::size_t>(placement.error().wheel)) + " " + placement.error().why});
+  }
   return footing_on(point.base, *placement, lifted, nullptr, parts_.placer.mass_kg());
 }
 
@@ -157,11 +163,9 @@ MotionBuilder::Done MotionBuilder::drive(const PreparedRun& run) {
     state_ = knots[i].state;
     if (held + 1 < run.held.size() && run.held[held + 1].first_knot == i) {
       ++held;
-      if (auto moved =
-              move_arm(footing(run.base, i, run.base.support.lifted), run.held[held].posture);
-          !moved) {
-        return moved;
-      }
+      const auto standing = footing(run.base, i, run.base.support.lifted);
+      if (!standing) return tl::unexpected<MotionFailure>(standing.error());
+      if (auto moved = move_arm(*standing, run.held[held].posture); !moved) return moved;
     }
     const ArmPosture arm = run.bucket ? ArmPosture{} : arm_now();
     const ArmPosture* fixed = run.bucket ? nullptr : &arm;
@@ -199,7 +203,11 @@ MotionBuilder::Done MotionBuilder::move_wheels(const PreparedRun& run, std::size
   const std::uint8_t lifted = run.base.support.lifted;
   const auto in_air = placed(point, lifted, run.base.lifted_hfe_rad);
   const auto standing = placed(point, 0, run.base.lifted_hfe_rad);
-  WEX_EXPECTS(in_air.has_value() && standing.has_value());  // judged with the runs on both sides
+  if (!in_air || !standing) {
+    const PlacementFailure& missed = in_air ? standing.error() : in_air.error();
+    missed_ground_ = true;
+    return failure(name_of(static_cast<std::size_t>(missed.wheel)) + " " + missed.why);
+  }
   for (std::size_t i = 0; i < kNumWheels; ++i) {
     if ((lifted >> i & 1) == 0) continue;
     const auto clear = parts_.placer.lowest_clear_rad(point.base, point.curvature_1_m,
@@ -225,7 +233,9 @@ MotionBuilder::Done MotionBuilder::move_wheels(const PreparedRun& run, std::size
 
 MotionBuilder::Done MotionBuilder::step_onto(const PreparedRun& run) {
   state_ = run.base.knots.front().state;
-  const Footing on_wheels = footing(run.base, 0, 0);
+  const auto standing = footing(run.base, 0, 0);
+  if (!standing) return tl::unexpected<MotionFailure>(standing.error());
+  const Footing& on_wheels = *standing;
   if (run.bucket) {
     auto lowering = mover_.lowering(on_wheels, nodes_.back().q, bucket_posture(run, 0));
     if (!lowering) return failure(lowering.error());
@@ -251,7 +261,9 @@ MotionBuilder::Done MotionBuilder::step_onto(const PreparedRun& run) {
 MotionBuilder::Done MotionBuilder::step_off(const PreparedRun& run, const ArmPosture& next) {
   const std::size_t last = run.base.knots.size() - 1;
   if (auto landed = move_wheels(run, last, false); !landed) return landed;
-  const Footing on_wheels = footing(run.base, last, 0);
+  const auto standing = footing(run.base, last, 0);
+  if (!standing) return tl::unexpected<MotionFailure>(standing.error());
+  const Footing& on_wheels = *standing;
   if (run.bucket) {
     auto rising = mover_.lowering(on_wheels, nodes_.back().q, arm_now());
     if (!rising) return failure(rising.error());
@@ -281,8 +293,9 @@ Result<ArmPosture, MotionFailure> MotionBuilder::arm_after(const std::vector<Pre
   if (drives || on_wheels + 1 == runs.size()) return parts_.arm.transport();
   const PreparedRun& next = runs[on_wheels + 1];
   if (!next.bucket) return next.held.front().posture;
-  const auto lowering =
-      mover_.lowering(footing(next.base, 0, 0), nodes_.back().q, bucket_posture(next, 0));
+  const auto standing = footing(next.base, 0, 0);
+  if (!standing) return tl::unexpected<MotionFailure>(standing.error());
+  const auto lowering = mover_.lowering(*standing, nodes_.back().q, bucket_posture(next, 0));
   if (!lowering) return failure(lowering.error());
   return lowering->front();
 }

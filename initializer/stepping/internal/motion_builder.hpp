@@ -53,7 +53,7 @@ class MotionBuilder {
   Done prepare_support(PreparedRun& run);
   Done raise_legs_clear(BaseRun& run);
   std::optional<std::string> judge(const BaseRun& run, const BaseKnot& knot);
-  std::vector<BucketStance> stances(const BaseRun& run);
+  Result<std::vector<BucketStance>, MotionFailure> stances(const BaseRun& run);
 
   // Poses of the whole body; wheel angles stay zero.
   Result<WheelPlacement, PlacementFailure> placed(const BaseRun::Point& point, std::uint8_t lifted,
@@ -62,7 +62,7 @@ class MotionBuilder {
                           const ArmPosture& arm) const;
   Result<Eigen::VectorXd, std::string> posture_at(const PreparedRun& run, double sigma_m,
                                                   const ArmPosture* held);
-  Footing footing(const BaseRun& run, std::size_t knot, std::uint8_t lifted);
+  Result<Footing, MotionFailure> footing(const BaseRun& run, std::size_t knot, std::uint8_t lifted);
 
   // Nodes.
   void add(const Eigen::VectorXd& q, double duration_s = 0.0);  // at least so long from the last

@@ -59,7 +59,7 @@ std::optional<std::string> MotionBuilder::judge(const BaseRun& run, const BaseKn
   return std::nullopt;
 }
 
-std::vector<BucketStance> MotionBuilder::stances(const BaseRun& run) {
+Result<std::vector<BucketStance>, MotionFailure> MotionBuilder::stances(const BaseRun& run) {
   std::vector<BucketStance> stances(run.knots.size());
   const Eigen::Vector3d* bucket =
       run.support.bucket < 0
@@ -68,10 +68,18 @@ std::vector<BucketStance> MotionBuilder::stances(const BaseRun& run) {
   for (std::size_t i = 0; i < run.knots.size(); ++i) {
     const BaseRun::Point point{run.knots[i].base, run.knots[i].curvature_1_m};
     const auto placement = placed(point, run.support.lifted, run.lifted_hfe_rad);
-    WEX_EXPECTS(placement.has_value());  // smooth_base has judged it
+    if (!placement) {
+      missed_ground_ = true;
+      return tl::unexpected<MotionFailure>(
+          {run.knots[i].state, name_of(placement.error().wheel) + " " + placement.error().why});
+    }
     stances[i].footing =
         footing_on(point.base, *placement, run.support.lifted, bucket, parts_.placer.mass_kg());
-    if (i == 0 || i + 1 == run.knots.size()) stances[i].on_wheels = footing(run, i, 0);
+    if (i == 0 || i + 1 == run.knots.size()) {
+      const auto on_wheels = footing(run, i, 0);
+      if (!on_wheels) return tl::unexpected<MotionFailure>(on_wheels.error());
+      stances[i].on_wheels = *on_wheels;
+    }
   }
   return stances;
 }
@@ -124,7 +132,9 @@ MotionBuilder::Done MotionBuilder::prepare_support(PreparedRun& run) {
   }
   if (auto raised = raise_legs_clear(run.base); !raised) return raised;
 
-  const std::vector<BucketStance> stance = stances(run.base);
+  const auto standing = stances(run.base);
+  if (!standing) return tl::unexpected<MotionFailure>(standing.error());
+  const std::vector<BucketStance>& stance = *standing;
   std::vector<Eigen::VectorXd> q(stance.size());
   for (std::size_t i = 0; i < q.size(); ++i) {
     const BaseRun::Point point{run.base.knots[i].base, run.base.knots[i].curvature_1_m};
