@@ -16,6 +16,7 @@ namespace wex {
 enum class PlanMode {
   kCertified,  ///< driving where it can, stepping by the layered graph where it must
   kDriveOnly,  ///< on four wheels or not at all
+  kPaper,      ///< the paper's initialization step: Algorithms 1 and 2, RRT#, post-processing
 };
 
 /// Mechanisms that can be switched off to see what they are worth.
@@ -24,6 +25,11 @@ struct PlanAblation {
   bool alignment = true;          ///< RRT# heads squarely at what must be stepped over
   bool blocking = true;           ///< places where certificates die are closed to later trees
   bool certified_tree = true;     ///< the tree of certified four-wheel states as fallback
+  // Of the paper's mode:
+  bool filtered_heights = true;     ///< Algorithm 1 may take the heavily filtered terrain
+  bool nearest_traversable = true;  ///< ... and that of the nearest traversable place
+  bool arm_centring = true;         ///< the arm as counterweight with three wheels on the ground
+  bool arm_support = true;          ///< the bucket as third contact with two
 };
 
 /// Defaults are the decisions' values; one set for every terrain.

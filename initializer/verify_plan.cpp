@@ -14,6 +14,8 @@ namespace wex {
 namespace {
 
 constexpr double kHeightToleranceM = 1e-3;
+constexpr double kBallToleranceM = 0.02;      // a disc just off the ground, judged as a ball
+constexpr double kDistanceToleranceM = 0.02;  // of a distance known by cells of 0.1 m
 constexpr double kBucketToleranceM = 0.02;
 constexpr double kBucketSlipM = 0.01;
 constexpr double kPoseTolerance = 1e-4;  // m and rad, at both ends
@@ -75,14 +77,14 @@ class Verifier {
       if (!contacts[i]) {
         // Here the tyre is a ball: near steep edges the smooth ground of a resting disc is not.
         const double height_m = p.z() - leg.radius_m - terrain_.dilated_height_m(p.head<2>());
-        if (!(height_m >= -kHeightToleranceM)) {
+        if (!(height_m >= -kBallToleranceM)) {
           return with_number("lifted " + name + " in the ground [m]:", height_m);
         }
         continue;
       }
       if (!terrain_.traversable_at(p.head<2>())) return name + " on untraversable ground";
       const double distance_m = terrain_.signed_distance_m(p.head<2>());
-      if (!(distance_m >= settings_.min_signed_distance_m - kRounding)) {
+      if (!(distance_m >= settings_.min_signed_distance_m - kDistanceToleranceM)) {
         return with_number(name + " close to untraversable ground [m]:", distance_m);
       }
       const Eigen::Vector3d axle =

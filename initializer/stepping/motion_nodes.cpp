@@ -13,12 +13,28 @@ namespace {
 
 constexpr double kRounding = 1e-6;
 constexpr double kStandstillM = 1e-9;
+constexpr double kLegSpacingM = 0.1;  // between the points of a leg held against the ground
 
 double travel_m(const Eigen::Vector3d& moved, const Eigen::Vector3d& axle_world, bool grounded) {
   const Eigen::Vector3d forward = axle_world.cross(Eigen::Vector3d::UnitZ()).normalized();
   if (!grounded) return moved.dot(forward);
   const Eigen::Vector3d rolled = moved - moved.dot(axle_world) * axle_world;
   return std::copysign(rolled.norm(), rolled.dot(forward));
+}
+
+const CollisionModel::Capsule* leg_in_ground(const TerrainMap& terrain,
+                                             const CollisionModel& collision,
+                                             const KinematicTree::Workspace& w) {
+  using Part = CollisionModel::Part;
+  const auto height_at = [&](const Eigen::Vector2d& p) { return terrain.height_m(p); };
+  for (std::size_t c = 0; c < collision.capsules().size(); ++c) {
+    const CollisionModel::Capsule& capsule = collision.capsules()[c];
+    if (capsule.load_bearing || capsule.part < Part::kLF || capsule.part > Part::kRH) continue;
+    if (!(collision.ground_clearance_m(w, static_cast<int>(c), kLegSpacingM, height_at) >= 0.0)) {
+      return &capsule;
+    }
+  }
+  return nullptr;
 }
 
 }  // namespace
@@ -58,6 +74,7 @@ void turn_wheels(const MachineModel& machine, std::vector<MotionNode>& nodes) {
 }
 
 std::optional<NodeFault> find_fault(const TerrainMap& terrain, const MachineModel& machine,
+                                    const CollisionModel& collision,
                                     const std::vector<MotionNode>& nodes, double min_margin_m) {
   KinematicTree::Workspace w = machine.tree.make_workspace();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -90,6 +107,9 @@ std::optional<NodeFault> find_fault(const TerrainMap& terrain, const MachineMode
         hull_margin_m(machine.tree.com(w).head<2>(), std::span(contacts.data(), num_contacts));
     if (!(margin_m >= min_margin_m)) {
       return NodeFault{i, "only " + std::to_string(margin_m) + " m of stability"};
+    }
+    if (const auto* capsule = leg_in_ground(terrain, collision, w)) {
+      return NodeFault{i, capsule->name + " is in the ground"};
     }
   }
   return std::nullopt;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "initializer/stepping/stepping_timing.hpp"
+#include "models/excavator/collision_model.hpp"
 #include "models/excavator/machine_model.hpp"
 #include "models/terrain/terrain_map.hpp"
 
@@ -14,13 +15,15 @@ namespace wex {
 /// carries the axle; lifted ones turn with ground speed while the base drives.
 void turn_wheels(const MachineModel& machine, std::vector<MotionNode>& nodes);
 
-/// The first node that breaks a limit of a joint or of stability on its scheduled contacts.
+/// The first node that breaks a limit of a joint or of stability on its scheduled contacts, or has
+/// a leg in the ground.
 struct NodeFault {
   std::size_t node = 0;
   std::string why;
 };
 [[nodiscard]] std::optional<NodeFault> find_fault(const TerrainMap& terrain,
                                                   const MachineModel& machine,
+                                                  const CollisionModel& collision,
                                                   const std::vector<MotionNode>& nodes,
                                                   double min_margin_m);
 

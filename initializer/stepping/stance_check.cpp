@@ -16,6 +16,8 @@ constexpr double kBucketClearM = 0.05;   // of the bucket's back while its edge 
 constexpr double kCounterWeightClearM = 0.3;
 constexpr double kBucketHalfWidthM = 0.6;  // where the ends of its edge are looked at
 constexpr double kBucketUnevenM = 0.15;    // ground under the ends against the middle
+constexpr double kClawClearM = 0.05;
+constexpr int kClawSamples = 5;  // a claw is 0.9 m long
 constexpr int kBeamSamples = 3, kForearmSamples = 4, kBucketSamples = 3;
 constexpr double kResidualM = 0.004;  // wheel centre against the ground, before it is refined
 constexpr int kMaxRefinements = 12;
@@ -88,6 +90,19 @@ bool StanceCheck::beams_clear(const BaseFrame& base, const LegSample& high, cons
   return true;
 }
 
+bool StanceCheck::claw_clear(const BaseFrame& base, const LegSample& high, const LegSample& low,
+                             double share, double radius_m) const noexcept {
+  const auto at = [&](std::size_t end) -> Eigen::Vector3d {
+    return base * ((1.0 - share) * high.p_base_claw[end] + share * low.p_base_claw[end]);
+  };
+  const Eigen::Vector3d from = at(0), step = (at(1) - from) / kClawSamples;
+  for (int k = 0; k <= kClawSamples; ++k) {
+    const Eigen::Vector3d x = from + k * step;
+    if (x.z() - radius_m - kClawClearM < ground_->highest_m(x.x(), x.y())) return false;
+  }
+  return true;
+}
+
 LegFault StanceCheck::lower_leg(const BaseFrame& base, const LegSweep& sweep, int leg,
                                 double edge_m, Stance& stance) const noexcept {
   const auto i = static_cast<std::size_t>(leg);
@@ -151,7 +166,7 @@ LegFault StanceCheck::lower_leg(const BaseFrame& base, const LegSweep& sweep, in
     share -= (raised_m - rest) / fall_m;
     if (n == 1 && share < 0.0) return LegFault::kNoGround;
     if (n + 1 == LegSweep::kSamples && share > 1.0) return LegFault::kTooLow;
-    if (!beams_clear(base, above, sample, share, sweep.num_beam_points)) {
+    if (!leg_clear(base, sweep, leg, above, sample, share)) {
       return LegFault::kBeam;
     }
     p_base = above.p_base_wheel + share * (sample.p_base_wheel - above.p_base_wheel);
@@ -182,7 +197,7 @@ Stance StanceCheck::stance(const BaseFrame& base, int steering,
     const Eigen::Vector3d p = base * highest.p_base_wheel;
     const double lowest = p.z() - tables_->radius_m[i] - clearances.swing_m;
     if (lowest >= ground_->dilated_m(p.x(), p.y()) &&
-        beams_clear(base, highest, highest, 0.0, sweep.num_beam_points)) {
+        leg_clear(base, sweep, leg, highest, highest, 0.0)) {
       stance.swing_clear |= static_cast<std::uint8_t>(1U << i);
     }
   }

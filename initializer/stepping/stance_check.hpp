@@ -108,6 +108,15 @@ class StanceCheck {
   [[nodiscard]] bool belly_clear(const BaseFrame& base, double clearance_m) const noexcept;
   [[nodiscard]] bool beams_clear(const BaseFrame& base, const LegSample& high, const LegSample& low,
                                  double share, int num_points) const noexcept;
+  [[nodiscard]] bool claw_clear(const BaseFrame& base, const LegSample& high, const LegSample& low,
+                                double share, double radius_m) const noexcept;
+  [[nodiscard]] bool leg_clear(const BaseFrame& base, const LegSweep& sweep, int leg,
+                               const LegSample& high, const LegSample& low,
+                               double share) const noexcept {
+    return beams_clear(base, high, low, share, sweep.num_beam_points) &&
+           (!sweep.has_claw || claw_clear(base, high, low, share,
+                                          tables_->claw_radius_m[static_cast<std::size_t>(leg)]));
+  }
   [[nodiscard]] LegFault lower_leg(const BaseFrame& base, const LegSweep& sweep, int leg,
                                    double edge_m, Stance& stance) const noexcept;
   [[nodiscard]] Eigen::Vector3d moment_of_legs(const Stance& stance,

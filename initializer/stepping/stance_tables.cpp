@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "initializer/leg_table.hpp"
+#include "models/excavator/collision_model.hpp"
 
 namespace wex {
 namespace {
@@ -19,6 +21,25 @@ std::vector<int> chain_to(const KinematicTree& tree, int body) {
     chain.insert(chain.begin(), b);
   }
   return chain;
+}
+
+/// A rod that contains what is carried beside the wheel: stands out behind it by half a metre.
+struct Claw {
+  int body = -1;
+  Eigen::Vector3d p_body_a, p_body_b;
+  double radius_m = 0.0;
+};
+
+std::optional<Claw> claw_of(const KinematicTree& tree, const CollisionModel& shapes,
+                            int carrier_body) {
+  std::optional<Claw> claw;
+  for (const CollisionModel::Capsule& capsule : shapes.capsules()) {
+    if (capsule.load_bearing || !tree.descends_from(capsule.body, carrier_body)) continue;
+    const bool longer = !claw || (capsule.p_body_b - capsule.p_body_a).norm() >
+                                     (claw->p_body_b - claw->p_body_a).norm();
+    if (longer) claw = {capsule.body, capsule.p_body_a, capsule.p_body_b, capsule.radius_m};
+  }
+  return claw;
 }
 
 }  // namespace
@@ -46,6 +67,8 @@ Result<StanceTables> StanceTables::build(const MachineModel& machine) {
 
   std::array<std::vector<int>, kNumWheels> chains;
   std::array<bool, kNumWheels> upper_is_high{};
+  std::array<std::optional<Claw>, kNumWheels> claws;
+  const CollisionModel shapes = CollisionModel::build(machine);
   for (std::size_t i = 0; i < kNumWheels; ++i) {
     const WheeledLeg& leg = machine.legs[i];
     const LegTable& table = (*leg_tables)[i];
@@ -55,6 +78,8 @@ Result<StanceTables> StanceTables::build(const MachineModel& machine) {
     tables.radius_m[i] = leg.radius_m;
     tables.half_width_m[i] = leg.half_width_m;
     tables.sag_m[i] = leg.static_sag_m;
+    claws[i] = claw_of(tree, shapes, leg.carrier_body);
+    if (claws[i]) tables.claw_radius_m[i] = claws[i]->radius_m;
   }
   for (std::size_t k = 0; k < kNumSteerings; ++k) {
     const double curvature_1_m =
@@ -80,6 +105,11 @@ Result<StanceTables> StanceTables::build(const MachineModel& machine) {
         sample.p_base_wheel = tree.position(w, leg.carrier_body, leg.p_carrier_wheel);
         sample.axle_base = tree.direction(w, leg.carrier_body, leg.axle_carrier);
         sample.moment_base = w.subtree_mass_times_com[static_cast<std::size_t>(chains[i].front())];
+        sweep.has_claw = claws[i].has_value();
+        if (claws[i]) {
+          sample.p_base_claw = {tree.position(w, claws[i]->body, claws[i]->p_body_a),
+                                tree.position(w, claws[i]->body, claws[i]->p_body_b)};
+        }
         sweep.num_beam_points =
             std::min(LegSample::kMaxBeamPoints, static_cast<int>(chains[i].size()));
         for (int b = 0; b < sweep.num_beam_points; ++b) {

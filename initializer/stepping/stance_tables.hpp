@@ -26,6 +26,7 @@ struct LegSample {
   Eigen::Vector3d axle_base;
   Eigen::Vector3d moment_base;  ///< mass times centre of mass of the whole leg [kg m]
   std::array<Eigen::Vector3d, kMaxBeamPoints> p_base_beam;  ///< hinges, hip to wheel carrier [m]
+  std::array<Eigen::Vector3d, 2> p_base_claw;  ///< ends of what the carrier carries [m]
 };
 
 /// One leg from the highest wheel position to the lowest, close enough for linear interpolation
@@ -34,6 +35,7 @@ struct LegSweep {
   static constexpr int kSamples = 25;
   std::array<LegSample, kSamples> samples;
   int num_beam_points = 0;
+  bool has_claw = false;
 };
 
 /// What a stance of the machine is computed from: legs over hip flexion and steering, the folded
@@ -41,7 +43,7 @@ struct LegSweep {
 /// posture. Plain data, made from the machine's kinematic tree.
 struct StanceTables {
   std::array<std::array<LegSweep, kNumSteerings>, kNumWheels> legs;  ///< by Limb and steering
-  std::array<double, kNumWheels> radius_m{}, half_width_m{}, sag_m{};
+  std::array<double, kNumWheels> radius_m{}, half_width_m{}, sag_m{}, claw_radius_m{};
   double mass_kg = 0.0;
   Eigen::Vector3d moment_chassis_base;                 ///< all but legs, cabin and arm [kg m]
   std::vector<Eigen::Vector3d> moment_folded_base;     ///< cabin and folded arm, over cabin yaw

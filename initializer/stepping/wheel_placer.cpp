@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kEndStopRad = 0.01;  // kept free of hip flexion's end stops
 constexpr double kToleranceM = 1e-6;
+constexpr double kDistanceErrorM = 0.02;  // poses between decided ones; a map's cell is 0.1 m
 constexpr int kMaxNewtonSteps = 12;
 constexpr double kScanRad = 0.02;  // hip flexion between samples where a search has to look
 constexpr double kBellySpacingM = 0.2;
@@ -86,7 +87,8 @@ double WheelPlacer::gap_m(const Eigen::Isometry3d& T_world_base, std::size_t whe
 const char* WheelPlacer::ground_under(const Eigen::Vector2d& p_world_xy) const {
   if (!terrain_->contains(p_world_xy)) return "is off the map";
   if (!terrain_->known(p_world_xy)) return "is over unknown ground";
-  if (!(ground_.clear_m(p_world_xy.x(), p_world_xy.y()) >= settings_.min_signed_distance_m)) {
+  if (!(ground_.clear_m(p_world_xy.x(), p_world_xy.y()) >=
+        settings_.min_signed_distance_m - kDistanceErrorM)) {
     return "is too close to ground no wheel may stand on";
   }
   return nullptr;

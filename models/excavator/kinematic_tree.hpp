@@ -51,6 +51,13 @@ class KinematicTree {
   KinematicTree(std::vector<Body> bodies, int num_coordinates);
 
   [[nodiscard]] const std::vector<Body>& bodies() const noexcept { return bodies_; }
+  /// Whether `body` is carried by `ancestor`; not true of a body and itself.
+  [[nodiscard]] bool descends_from(int body, int ancestor) const noexcept {
+    do {
+      body = bodies_[static_cast<std::size_t>(body)].parent;
+    } while (body >= 0 && body != ancestor);
+    return body == ancestor;
+  }
   [[nodiscard]] int num_coordinates() const noexcept { return num_coordinates_; }
   [[nodiscard]] double total_mass_kg() const noexcept { return total_mass_kg_; }
   [[nodiscard]] int body_index(const std::string& name) const;  ///< -1 if there is none

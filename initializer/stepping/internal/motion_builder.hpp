@@ -52,6 +52,8 @@ class MotionBuilder {
   Done prepare(PreparedRun& run);
   Done prepare_support(PreparedRun& run);
   Done raise_legs_clear(BaseRun& run);
+  // As the machine stands in workspace_, of the ground.
+  bool leg_clear(std::size_t leg, double clearance_m, bool claw_only) const;
   std::optional<std::string> judge(const BaseRun& run, const BaseKnot& knot);
   Result<std::vector<BucketStance>, MotionFailure> stances(const BaseRun& run);
 

@@ -11,7 +11,9 @@ namespace {
 
 constexpr double kTableErrorM = 1e-4;    // added to demands: tables err by less
 constexpr double kSwingReserveM = 0.01;  // of the tyres, for what is between the poses looked at
-constexpr double kBeamClearanceM = 0.05;
+constexpr double kComfortableReserveM = 0.05;  // where legs go so high
+constexpr double kBeamClearanceM = 0.05, kStandingClawClearM = 0.02;
+constexpr double kLegSpacingM = 0.1;  // between the points of a leg held against the ground
 constexpr double kLiftStepRad = 0.05;
 
 std::string name_of(int wheel) {
@@ -33,6 +35,24 @@ Result<WheelPlacement, PlacementFailure> MotionBuilder::placed(const BaseRun::Po
   return placement;
 }
 
+bool MotionBuilder::leg_clear(std::size_t leg, double clearance_m, bool claw_only) const {
+  const StanceGround& ground = parts_.placer.ground();
+  const auto height_at = [&](const Eigen::Vector2d& p) { return ground.highest_m(p.x(), p.y()); };
+  const auto part =
+      static_cast<CollisionModel::Part>(static_cast<std::size_t>(CollisionModel::Part::kLF) + leg);
+  const int carrier = parts_.machine.legs[leg].carrier_body;
+  const auto& capsules = parts_.collision.capsules();
+  for (std::size_t c = 0; c < capsules.size(); ++c) {
+    if (capsules[c].part != part || capsules[c].load_bearing) continue;
+    if (claw_only && !parts_.machine.tree.descends_from(capsules[c].body, carrier)) continue;
+    if (parts_.collision.ground_clearance_m(workspace_, static_cast<int>(c), kLegSpacingM,
+                                            height_at) < clearance_m) {
+      return false;
+    }
+  }
+  return true;
+}
+
 std::optional<std::string> MotionBuilder::judge(const BaseRun& run, const BaseKnot& knot) {
   Hips upper{};
   for (int i = 0; i < kNumWheels; ++i) {
@@ -42,8 +62,16 @@ std::optional<std::string> MotionBuilder::judge(const BaseRun& run, const BaseKn
   const auto placement = placed({knot.base, knot.curvature_1_m}, lifted, upper);
   if (!placement) return name_of(placement.error().wheel) + " " + placement.error().why;
   if (!parts_.placer.belly_clear(knot.base)) return "the chassis is too close to the ground";
+  parts_.machine.tree.update(
+      posture({knot.base, knot.curvature_1_m}, *placement, parts_.arm.transport()), workspace_);
   for (int i = 0; i < kNumWheels; ++i) {
-    if ((lifted >> i & 1) == 0) continue;
+    if ((lifted >> i & 1) == 0) {
+      if (!leg_clear(static_cast<std::size_t>(i), kStandingClawClearM, true)) {
+        return "the claw of leg " + std::string(kLimbNames[static_cast<std::size_t>(i)]) +
+               " is too close to the ground";
+      }
+      continue;
+    }
     if (!parts_.placer.lowest_clear_rad(knot.base, knot.curvature_1_m, i,
                                         parts_.motion.swing_clearance_m)) {
       return name_of(i) + " cannot be lifted clear of the ground";
@@ -86,13 +114,8 @@ Result<std::vector<BucketStance>, MotionFailure> MotionBuilder::stances(const Ba
 
 // The wheels' clearance decides how high legs are lifted; their beams may ask for more.
 MotionBuilder::Done MotionBuilder::raise_legs_clear(BaseRun& run) {
-  const StanceGround& ground = parts_.placer.ground();
-  const auto height_at = [&](const Eigen::Vector2d& p) { return ground.highest_m(p.x(), p.y()); };
-  const auto& capsules = parts_.collision.capsules();
   for (std::size_t leg = 0; leg < kNumWheels; ++leg) {
     if ((run.support.lifted >> leg & 1) == 0) continue;
-    const auto part = static_cast<CollisionModel::Part>(
-        static_cast<std::size_t>(CollisionModel::Part::kLF) + leg);
     double& hfe = run.lifted_hfe_rad[leg];
     for (const BaseKnot& knot : run.knots) {
       const BaseRun::Point point{knot.base, knot.curvature_1_m};
@@ -100,13 +123,7 @@ MotionBuilder::Done MotionBuilder::raise_legs_clear(BaseRun& run) {
         const auto placement = placed(point, run.support.lifted, run.lifted_hfe_rad);
         if (!placement) return tl::unexpected<MotionFailure>({knot.state, placement.error().why});
         parts_.machine.tree.update(posture(point, *placement, parts_.arm.transport()), workspace_);
-        double clearance_m = 1e9;
-        for (std::size_t c = 0; c < capsules.size(); ++c) {
-          if (capsules[c].part != part || capsules[c].load_bearing) continue;
-          clearance_m = std::min(clearance_m, parts_.collision.ground_clearance_m(
-                                                  workspace_, static_cast<int>(c), 0.3, height_at));
-        }
-        if (clearance_m >= kBeamClearanceM) break;
+        if (leg_clear(leg, kBeamClearanceM, false)) break;
         const double upper = parts_.placer.upper_rad(static_cast<int>(leg));
         if (hfe >= upper) {
           return tl::unexpected<MotionFailure>(
@@ -125,11 +142,12 @@ MotionBuilder::Done MotionBuilder::prepare_support(PreparedRun& run) {
     run.held = {{0, parts_.arm.transport()}};
     return {};
   }
-  if (auto lifts =
-          lift_wheels(run.base, parts_.placer, parts_.motion.swing_clearance_m + kSwingReserveM);
-      !lifts) {
-    return lifts;
+  Done lifts =
+      lift_wheels(run.base, parts_.placer, parts_.motion.swing_clearance_m + kComfortableReserveM);
+  if (!lifts) {
+    lifts = lift_wheels(run.base, parts_.placer, parts_.motion.swing_clearance_m + kSwingReserveM);
   }
+  if (!lifts) return lifts;
   if (auto raised = raise_legs_clear(run.base); !raised) return raised;
 
   const auto standing = stances(run.base);
