@@ -5,6 +5,7 @@
 
 #include "models/excavator/mjcf.hpp"
 #include "models/terrain/synthetic.hpp"
+#include "tools/bench/algorithm2_bench.hpp"
 #include "tools/bench/can_bench.hpp"
 #include "tools/bench/drive_bench.hpp"
 #include "tools/bench/initializer_bench.hpp"
@@ -51,6 +52,7 @@ struct Options {
   check::CheckOptions check;
   RoadmapOptions roadmap;
   RoadmapBenchOptions roadmap_bench;
+  Algorithm2BenchOptions algorithm2_bench;
 };
 
 template <typename Parse>
@@ -399,6 +401,12 @@ void add_bench(CLI::App& app, Options& options) {
       ->type_name("DIR")
       ->capture_default_str();
   add_initializer_bench(command, options.initializer_bench);
+  CLI::App& algorithm2 = *command.add_subcommand(
+      "algorithm2", "Checks per second of the paper's Algorithm 2, beside the plain loop");
+  algorithm2.add_option("--repeats", options.algorithm2_bench.repeats, "Repeats of each")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N")
+      ->capture_default_str();
   CLI::App& roadmaps =
       *command.add_subcommand("roadmap", "Building and loading of limb roadmaps, arm motions");
   roadmaps.add_option("--repeats", options.roadmap_bench.repeats, "Repeats of each")
@@ -504,6 +512,10 @@ int bench_command(const CLI::App& command, const Options& options, std::ostream&
   if (name == "kinematics") return bench_kinematics();
   if (name == "mpc") return bench_mpc();
   if (name == "initializer") return initializer_bench_command(options.initializer_bench, out, err);
+  if (name == "algorithm2") {
+    const Result<void> done = bench_algorithm2(options.algorithm2_bench, out);
+    return done ? 0 : refuse(err, done.error());
+  }
   if (name == "roadmap") {
     const Result<void> done = bench_roadmap(options.roadmap_bench, out);
     return done ? 0 : refuse(err, done.error());
