@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "initializer/paper/paper_search.hpp"
 #include "initializer/plan_search.hpp"
 #include "initializer/pose_check.hpp"
 #include "initializer/whole_body.hpp"
@@ -84,6 +85,9 @@ Result<Plan> make_plan(const TerrainMap& terrain, const MachineModel& machine, c
   if (!start) return tl::unexpected<Error>(start.error());
   if (auto goal = standing_at(*check, terrain, task.goal, "the goal"); !goal) {
     return tl::unexpected<Error>(goal.error());
+  }
+  if (settings.mode == PlanMode::kPaper) {
+    return make_paper_plan(terrain, machine, task, settings, observer, begin_s);
   }
   return PlanSearch(terrain, machine, task, settings, observer, *check, start->base, begin_s).run();
 }

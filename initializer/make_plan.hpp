@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 
+#include "initializer/planner_kind.hpp"
 #include "models/excavator/machine_model.hpp"
 #include "models/terrain/terrain_map.hpp"
 #include "models/types/plan.hpp"
@@ -36,6 +37,7 @@ struct PlanAblation {
 struct PlanSettings {
   PlanMode mode = PlanMode::kCertified;
   PlanAblation ablation;
+  PlannerKind planner = PlannerKind::kRrtSharp;  ///< of the paper's mode
   double stepping_penalty = 1.0;  ///< factor on what stepping costs beside its way; 0: nothing
   double time_budget_s = 4.0;     ///< ignored when iterations is set
   std::optional<int> iterations;  ///< fixed number of planner iterations: deterministic by seed
@@ -56,6 +58,7 @@ struct PlanProgress {
   double elapsed_s = 0.0;
   std::optional<double> best_cost;
   const Plan* better = nullptr;  ///< a plan just found, the best so far; valid during the call
+  int num_paths = 0;             ///< of the base, found so far in the paper's mode; plans or not
 };
 
 /// A plan from task.start to task.goal (local world frame): driving where it can, stepping where it

@@ -4,10 +4,9 @@
 #include <ompl/base/OptimizationObjective.h>
 #include <ompl/base/ProblemDefinition.h>
 #include <ompl/base/goals/GoalState.h>
+#include <ompl/base/samplers/InformedStateSampler.h>
 #include <ompl/base/spaces/ReedsSheppStateSpace.h>
-#include <ompl/datastructures/NearestNeighborsLinear.h>
 #include <ompl/geometric/PathGeometric.h>
-#include <ompl/geometric/planners/rrt/RRTsharp.h>
 #include <ompl/util/Console.h>
 
 #include <algorithm>
@@ -16,6 +15,8 @@
 #include <random>
 #include <string>
 #include <utility>
+
+#include "initializer/internal/ompl_planners.hpp"
 
 namespace wex {
 namespace {
@@ -36,14 +37,6 @@ void set_pose(ob::State* state, const Pose2& pose) {
   s->setXY(pose.x_m, pose.y_m);
   s->setYaw(wrap_angle(pose.yaw_rad));
 }
-
-// RRT# whose only own random draws (goal bias) follow the seed.
-class SeededRrtSharp : public og::RRTsharp {
- public:
-  SeededRrtSharp(const ob::SpaceInformationPtr& si, std::uint64_t seed) : og::RRTsharp(si) {
-    rng_.setLocalSeed(static_cast<std::uint_fast32_t>(seed));
-  }
-};
 
 // Reeds-Shepp curves to steer along; distance plus weighted yaw to find neighbours by.
 class SteeringSpace : public ob::ReedsSheppStateSpace {
@@ -123,6 +116,28 @@ class SeededSampler : public ob::StateSampler {
   std::mt19937_64 generator_;
 };
 
+// For BIT*: the space's own sampler, which knows where a shorter path could pass; OMPL's default
+// would draw from a sampler of its own that no seed reaches.
+class InformedBySpace : public ob::InformedSampler {
+ public:
+  InformedBySpace(const ob::ProblemDefinitionPtr& problem, unsigned max_calls)
+      : ob::InformedSampler(problem, max_calls), sampler_(space_->allocStateSampler()) {}
+  bool sampleUniform(ob::State* state, const ob::Cost&) override {
+    sampler_->sampleUniform(state);
+    return true;
+  }
+  bool sampleUniform(ob::State* state, const ob::Cost&, const ob::Cost& most) override {
+    return sampleUniform(state, most);
+  }
+  [[nodiscard]] bool hasInformedMeasure() const override { return false; }
+  [[nodiscard]] double getInformedMeasure(const ob::Cost&) const override {
+    return space_->getMeasure();
+  }
+
+ private:
+  ob::StateSamplerPtr sampler_;
+};
+
 class PathValidator : public ob::MotionValidator {
  public:
   PathValidator(const ob::SpaceInformationPtr& si, const SteeringSpace* space, double spacing_m,
@@ -164,6 +179,10 @@ class DrivingCost : public ob::OptimizationObjective {
   ob::Cost stateCost(const ob::State*) const override { return identityCost(); }
   ob::Cost motionCost(const ob::State* a, const ob::State* b) const override {
     return ob::Cost(path_cost_m(space_->path(a, b), settings_.cost));
+  }
+  ob::InformedSamplerPtr allocInformedStateSampler(const ob::ProblemDefinitionPtr& problem,
+                                                   unsigned max_calls) const override {
+    return std::make_shared<InformedBySpace>(problem, max_calls);
   }
 
  private:
@@ -219,7 +238,7 @@ struct Se2Search::Impl {
   double best_cost_m = std::numeric_limits<double>::infinity();
   std::shared_ptr<SteeringSpace> space;
   std::shared_ptr<ob::ProblemDefinition> problem;
-  std::shared_ptr<SeededRrtSharp> planner;
+  AnytimePlanner planner;
   std::string failure;
 
   void build(std::uint64_t seed) {
@@ -254,13 +273,7 @@ struct Se2Search::Impl {
     problem->setOptimizationObjective(
         std::make_shared<DrivingCost>(si, space.get(), settings, goal));
 
-    planner = std::make_shared<SeededRrtSharp>(si, seed);
-    planner->setRange(settings.range_m);
-    planner->setGoalBias(settings.goal_bias);
-    planner->setProblemDefinition(problem);
-    // Exact and free of random pivots, unlike OMPL's GNAT; needs the problem definition set.
-    planner->setNearestNeighbors<ompl::NearestNeighborsLinear>();
-    planner->setup();
+    planner = make_planner(si, problem, settings, seed);
   }
 
   std::optional<DrivePath> solution() {
@@ -295,12 +308,12 @@ Se2Search::Se2Search(const Pose2& start, const Pose2& goal, const SearchSettings
 Se2Search::~Se2Search() = default;
 
 int Se2Search::iterations() const {
-  return impl_->planner ? static_cast<int>(impl_->planner->numIterations()) : 0;
+  return impl_->planner.planner ? impl_->planner.iterations() : 0;
 }
 
 double Se2Search::best_cost_m() const {
-  return impl_->planner ? impl_->planner->bestCost().value()
-                        : std::numeric_limits<double>::infinity();
+  const double cost_m = impl_->planner.planner ? impl_->planner.best_cost_m() : HUGE_VAL;
+  return std::isfinite(cost_m) ? cost_m : HUGE_VAL;
 }
 
 Result<std::optional<DrivePath>> Se2Search::find_cheaper_than(double cost_m,
@@ -311,15 +324,15 @@ Result<std::optional<DrivePath>> Se2Search::find_cheaper_than(double cost_m,
   try {
     bool stopped = false;
     const ob::PlannerTerminationCondition done([&] {
-      const double best_m = impl_->planner->bestCost().value();
-      if (std::isfinite(best_m)) impl_->best_cost_m = best_m;
+      const double best_m = best_cost_m();
+      impl_->best_cost_m = best_m;
       if (best_m < cost_m) return true;
       stopped = stop();
       return stopped;
     });
     impl_->problem->clearSolutionPaths();
-    impl_->planner->solve(done);
-    if (stopped && !(impl_->planner->bestCost().value() < cost_m)) return std::nullopt;
+    impl_->planner.planner->solve(done);
+    if (stopped && !(best_cost_m() < cost_m)) return std::nullopt;
     return impl_->solution();
   } catch (const std::exception& e) {
     impl_->failure = e.what();

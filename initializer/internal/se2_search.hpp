@@ -6,14 +6,16 @@
 #include <optional>
 
 #include "initializer/drive_path.hpp"
+#include "initializer/planner_kind.hpp"
 #include "models/types/pose.hpp"
 #include "models/types/result.hpp"
 
-// OMPL stays behind this file: Reeds-Shepp curves and RRT#.
+// OMPL stays behind this file: Reeds-Shepp curves, RRT# and its like.
 
 namespace wex {
 
 struct SearchSettings {
+  PlannerKind planner = PlannerKind::kRrtSharp;
   double turning_radius_m = 4.5;
   double range_m = 10.0;  ///< in the distance the tree is grown by
   double subnode_spacing_m = 0.2;
@@ -34,8 +36,9 @@ using PoseValidity = std::function<bool(const Pose2& pose, double curvature_1_m)
 [[nodiscard]] bool path_is_valid(const DrivePath& path, double spacing_m,
                                  const PoseValidity& is_valid);
 
-/// One RRT# tree from start to goal. Nearest neighbours by distance plus weighted yaw, edges by
-/// Reeds-Shepp curves, cost as PathCostWeights. All randomness comes from the seed. One thread.
+/// One tree (RRT# unless the settings name another planner) from start to goal. Nearest neighbours
+/// by distance plus weighted yaw, edges by Reeds-Shepp curves, cost as PathCostWeights. All
+/// randomness comes from the seed. One thread.
 class Se2Search {
  public:
   Se2Search(const Pose2& start, const Pose2& goal, const SearchSettings& settings,

@@ -64,6 +64,7 @@ InitializerRow planned(const InitializerBenchOptions& options, const MachineMode
   settings.seed = work.seed;
   std::optional<Plan> first;
   const auto plan = make_plan(*terrain, machine, task, settings, [&](const PlanProgress& progress) {
+    row.paths = std::max(row.paths, progress.num_paths);
     if (first || progress.better == nullptr) return;
     first = *progress.better;
     row.first_s = progress.elapsed_s;
@@ -73,6 +74,7 @@ InitializerRow planned(const InitializerBenchOptions& options, const MachineMode
     return row;
   }
   row.found = true;
+  row.paths = std::max(row.paths, 1);
   row.total_s = plan->total_time_s;
   row.cost = plan->cost;
   row.first_cost = first ? first->cost : plan->cost;

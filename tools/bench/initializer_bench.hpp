@@ -41,6 +41,7 @@ struct InitializerCell {
 struct InitializerRow {
   std::string cell;
   std::uint64_t seed = 0;
+  int paths = 0;  ///< of the base, found on the way; in other modes than the paper's: the plan
   bool found = false, first_accepted = false, accepted = false;
   double first_s = 0.0;  ///< thread CPU time to the first accepted plan
   double total_s = 0.0;  ///< of the whole search

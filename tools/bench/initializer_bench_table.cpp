@@ -12,7 +12,8 @@ namespace wex {
 namespace {
 
 constexpr const char* kHeader =
-    "cell,seed,found,first_accepted,accepted,first_s,total_s,first_cost,cost,length_m,duration_s,"
+    "cell,seed,paths,found,first_accepted,accepted,first_s,total_s,first_cost,cost,length_m,"
+    "duration_s,"
     "margin_m,lifts,reason\n";
 
 template <typename... Values>
@@ -52,9 +53,9 @@ std::string csv_line(const InitializerRow& row) {
   std::replace(reason.begin(), reason.end(), ',', ';');
   std::replace(reason.begin(), reason.end(), '\n', ' ');
   return row.cell + "," + std::to_string(row.seed) +
-         format(",%d,%d,%d,%.4f,%.3f,%.3f,%.3f,%.3f,%.2f,%.3f,%d,", row.found, row.first_accepted,
-                row.accepted, row.first_s, row.total_s, row.first_cost, row.cost, row.length_m,
-                row.duration_s, row.margin_m, row.lifts) +
+         format(",%d,%d,%d,%d,%.4f,%.3f,%.3f,%.3f,%.3f,%.2f,%.3f,%d,", row.paths, row.found,
+                row.first_accepted, row.accepted, row.first_s, row.total_s, row.first_cost,
+                row.cost, row.length_m, row.duration_s, row.margin_m, row.lifts) +
          reason + "\n";
 }
 
@@ -62,20 +63,21 @@ std::optional<InitializerRow> row_of(const std::string& line) {
   std::istringstream stream(line);
   std::vector<std::string> fields;
   for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
-  if (fields.size() == 13) fields.emplace_back();
-  if (fields.size() != 14) return std::nullopt;
+  if (fields.size() == 14) fields.emplace_back();
+  if (fields.size() != 15) return std::nullopt;
   InitializerRow row;
   try {
     row.cell = fields[0];
     row.seed = std::stoull(fields[1]);
-    row.found = fields[2] == "1";
-    row.first_accepted = fields[3] == "1";
-    row.accepted = fields[4] == "1";
+    row.paths = std::stoi(fields[2]);
+    row.found = fields[3] == "1";
+    row.first_accepted = fields[4] == "1";
+    row.accepted = fields[5] == "1";
     double* const numbers[] = {&row.first_s,  &row.total_s,    &row.first_cost, &row.cost,
                                &row.length_m, &row.duration_s, &row.margin_m};
-    for (std::size_t i = 0; i < std::size(numbers); ++i) *numbers[i] = std::stod(fields[5 + i]);
-    row.lifts = std::stoi(fields[12]);
-    row.reason = fields[13];
+    for (std::size_t i = 0; i < std::size(numbers); ++i) *numbers[i] = std::stod(fields[6 + i]);
+    row.lifts = std::stoi(fields[13]);
+    row.reason = fields[14];
   } catch (const std::exception&) {
     return std::nullopt;
   }
@@ -91,18 +93,21 @@ std::string initializer_csv(const std::vector<InitializerRow>& rows) {
 std::string initializer_table(const std::vector<InitializerCell>& cells,
                               const std::vector<InitializerRow>& rows) {
   std::string text =
-      "cell                    accepted  found   first accepted plan [s]      cost          path   "
+      "cell                    accepted  found  paths   first accepted plan [s]      cost          "
+      "path   "
       "duration  lifts  margin\n"
-      "                                          median    95 %     max   first    last      [m]   "
+      "                                                 median    95 %     max   first    last     "
+      " [m]   "
       "     [s]            [m]\n";
   int pooled = 0, judged = 0;
   for (const InitializerCell& cell : cells) {
     const auto own = rows_of(rows, cell.name);
     if (own.empty()) continue;
     std::vector<double> first_s, first_cost, cost, length_m, duration_s, lifts, margin_m;
-    int found = 0;
+    int found = 0, with_path = 0;
     for (const InitializerRow* row : own) {
       found += row->found;
+      with_path += row->paths > 0;
       if (!row->accepted) continue;
       first_s.push_back(row->first_s);
       first_cost.push_back(row->first_cost);
@@ -117,7 +122,8 @@ std::string initializer_table(const std::vector<InitializerCell>& cells,
       pooled += good;
       judged += static_cast<int>(own.size());
     }
-    text += format("%-22s %5d/%-3zu %4d", cell.name.c_str(), good, own.size(), found);
+    text +=
+        format("%-22s %5d/%-3zu %4d %6d", cell.name.c_str(), good, own.size(), found, with_path);
     if (good > 0) {
       text +=
           format("   %8.3f %7.3f %7.3f  %6.2f  %6.2f  %7.2f  %8.1f  %5.1f  %6.2f",

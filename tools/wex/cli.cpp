@@ -153,10 +153,16 @@ void add_run(CLI::App& app, Options& options) {
 /// How plans are made, and what of it is switched off for a comparison.
 void add_plan_settings(CLI::App& command, PlanSettings& plan) {
   static const std::map<std::string, PlanMode> kModes{{"certified", PlanMode::kCertified},
-                                                      {"drive", PlanMode::kDriveOnly}};
+                                                      {"drive", PlanMode::kDriveOnly},
+                                                      {"paper", PlanMode::kPaper}};
+  static const std::map<std::string, PlannerKind> kPlanners{{"rrtsharp", PlannerKind::kRrtSharp},
+                                                            {"rrtstar", PlannerKind::kRrtStar},
+                                                            {"bitstar", PlannerKind::kBitStar},
+                                                            {"prmstar", PlannerKind::kPrmStar}};
   command
       .add_option("--mode", plan.mode,
-                  "certified: drive where it can, step where it must; drive: on four wheels only")
+                  "certified: drive where it can, step where it must; drive: on four wheels only; "
+                  "paper: the scheme as published")
       ->transform(CLI::CheckedTransformer(kModes))
       ->type_name("MODE")
       ->default_str("certified");
@@ -176,6 +182,20 @@ void add_plan_settings(CLI::App& command, PlanSettings& plan) {
   add_ablation("--no-blocking", ablation.blocking, "Ablation: places where paths failed stay open");
   add_ablation("--no-certified-tree", ablation.certified_tree,
                "Ablation: no tree of certified states as fallback");
+  command
+      .add_option("--planner", plan.planner,
+                  "Of the paper's mode: rrtsharp, rrtstar, bitstar or prmstar")
+      ->transform(CLI::CheckedTransformer(kPlanners))
+      ->type_name("PLANNER")
+      ->default_str("rrtsharp");
+  add_ablation("--no-filtered-heights", ablation.filtered_heights,
+               "Ablation of the paper's mode: base poses by the raw terrain alone");
+  add_ablation("--no-nearest-traversable", ablation.nearest_traversable,
+               "Ablation of the paper's mode: base poses by the terrain underneath alone");
+  add_ablation("--no-arm-centring", ablation.arm_centring,
+               "Ablation of the paper's mode: on three wheels the arm stays where it is");
+  add_ablation("--no-arm-support", ablation.arm_support,
+               "Ablation of the paper's mode: the bucket never carries");
 }
 
 void add_plan(CLI::App& app, Options& options) {

@@ -1,0 +1,105 @@
+#include "initializer/paper/body_poser.hpp"
+
+#include <utility>
+
+#include "initializer/stepping/tyre_patch.hpp"
+
+namespace wex {
+
+Result<BodyPoser> BodyPoser::build(const TerrainMap& terrain, const MachineModel& machine,
+                                   const Roadmaps& roadmaps, const PaperCheck& check,
+                                   const PlanSettings& settings) {
+  auto placer = WheelPlacer::build(terrain, machine, settings);
+  if (!placer) return tl::unexpected<Error>(placer.error());
+  auto arm = ArmKinematics::build(machine);
+  if (!arm) return tl::unexpected<Error>(arm.error());
+  return BodyPoser(terrain, machine, roadmaps, check, *std::move(placer), *std::move(arm));
+}
+
+BodyPoser::BodyPoser(const TerrainMap& terrain, const MachineModel& machine,
+                     const Roadmaps& roadmaps, const PaperCheck& check, WheelPlacer placer,
+                     ArmKinematics arm)
+    : terrain_(&terrain),
+      machine_(&machine),
+      roadmaps_(&roadmaps),
+      check_(&check),
+      placer_(std::move(placer)),
+      arm_(std::move(arm)),
+      inverse_(terrain, machine),
+      workspace_(machine.tree.make_workspace()) {}
+
+LegJoints BodyPoser::read_leg(const Eigen::VectorXd& q, std::size_t leg) const {
+  const WheeledLeg& wheel = machine_->legs[leg];
+  return {wheel.haa < 0 ? 0.0 : q[wheel.haa], q[wheel.hfe], wheel.steer < 0 ? 0.0 : q[wheel.steer]};
+}
+
+void BodyPoser::write_leg(const LegJoints& joints, std::size_t leg, Eigen::VectorXd& q) const {
+  const WheeledLeg& wheel = machine_->legs[leg];
+  if (wheel.haa >= 0) q[wheel.haa] = joints.haa_rad;
+  q[wheel.hfe] = joints.hfe_rad;
+  if (wheel.steer >= 0) q[wheel.steer] = joints.steer_rad;
+}
+
+LegJoints BodyPoser::vertex_joints(std::size_t leg, int vertex) const {
+  const LimbRoadmap& map = roadmaps_->limbs[leg];
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(machine_->num_coordinates());
+  for (std::size_t k = 0; k < map.coordinates.size(); ++k) {
+    q[map.coordinates[k]] = map.q(static_cast<Eigen::Index>(k), vertex);
+  }
+  return read_leg(q, leg);
+}
+
+ArmPosture BodyPoser::vertex_posture(int vertex) const {
+  const LimbRoadmap& map = roadmaps_->limbs.back();
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(machine_->num_coordinates());
+  for (std::size_t k = 0; k < map.coordinates.size(); ++k) {
+    q[map.coordinates[k]] = map.q(static_cast<Eigen::Index>(k), vertex);
+  }
+  return arm_.posture_of(q);
+}
+
+Result<LegJoints, const char*> BodyPoser::standing(const BaseCoordinates& base,
+                                                   double curvature_1_m, std::size_t leg) {
+  const auto others = static_cast<std::uint8_t>(0xF & ~(1U << leg));
+  const auto hips = placer_.default_hfe_rad();
+  if (const auto placed = placer_.place(base, curvature_1_m, others, hips, hips)) {
+    const WheeledLeg& wheel = machine_->legs[leg];
+    const double haa_rad =
+        wheel.haa < 0 ? 0.0 : machine_->transport_posture()[wheel.haa - kNumBaseCoordinates];
+    return LegJoints{haa_rad, placed->hfe_rad[leg], placed->steer_rad[leg]};
+  }
+  const int row = check_->ground_legs(base)[leg];
+  if (row < 0) return tl::unexpected<const char*>("has too few configurations on the ground");
+  return inverse_.rest(base, leg, curvature_1_m,
+                       vertex_joints(leg, check_->leg_table(leg).vertex(row)));
+}
+
+Footing BodyPoser::footing(const Eigen::VectorXd& q, const ContactFlags& contacts) {
+  machine_->tree.update(q, workspace_);
+  Footing footing;
+  footing.base = q.head<kNumBaseCoordinates>();
+  footing.T_world_base = T_world_base_from(footing.base);
+  footing.mass_kg = machine_->tree.total_mass_kg();
+  footing.moment_base =
+      footing.mass_kg * (footing.T_world_base.inverse() * machine_->tree.com(workspace_)) -
+      arm_.moment_base(arm_.posture_of(q));
+  for (std::size_t i = 0; i < kNumWheels; ++i) {
+    if (!contacts[i]) continue;
+    const WheeledLeg& leg = machine_->legs[i];
+    const Eigen::Vector3d p =
+        machine_->tree.position(workspace_, leg.carrier_body, leg.p_carrier_wheel);
+    const Eigen::Vector3d axle =
+        machine_->tree.direction(workspace_, leg.carrier_body, leg.axle_carrier);
+    footing.contacts[footing.num_contacts++] =
+        tyre_patch(*terrain_, p, axle, leg.radius_m, leg.half_width_m).head<2>();
+  }
+  if (contacts[static_cast<std::size_t>(Limb::kArm)]) {
+    footing.contacts[footing.num_contacts++] =
+        machine_->tree
+            .position(workspace_, machine_->arm->contact_body, machine_->arm->p_body_contact)
+            .head<2>();
+  }
+  return footing;
+}
+
+}  // namespace wex
