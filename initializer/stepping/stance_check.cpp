@@ -95,7 +95,12 @@ bool StanceCheck::claw_clear(const BaseFrame& base, const LegSample& high, const
   const auto at = [&](std::size_t end) -> Eigen::Vector3d {
     return base * ((1.0 - share) * high.p_base_claw[end] + share * low.p_base_claw[end]);
   };
-  const Eigen::Vector3d from = at(0), step = (at(1) - from) / kClawSamples;
+  const Eigen::Vector3d from = at(0), to = at(1), step = (to - from) / kClawSamples;
+  const Eigen::Vector3d middle = 0.5 * (from + to);
+  if (std::min(from.z(), to.z()) - radius_m - kClawClearM >
+      ground_->ground_top_m(middle.x(), middle.y())) {
+    return true;
+  }
   for (int k = 0; k <= kClawSamples; ++k) {
     const Eigen::Vector3d x = from + k * step;
     if (x.z() - radius_m - kClawClearM < ground_->highest_m(x.x(), x.y())) return false;
@@ -168,6 +173,11 @@ LegFault StanceCheck::lower_leg(const BaseFrame& base, const LegSweep& sweep, in
     if (n + 1 == LegSweep::kSamples && share > 1.0) return LegFault::kTooLow;
     if (!leg_clear(base, sweep, leg, above, sample, share)) {
       return LegFault::kBeam;
+    }
+    // A claw stands out farthest while it is level, on the way up or down.
+    for (int m = 0; m < n && sweep.has_claw; ++m) {
+      const LegSample& passed = sweep.samples[static_cast<std::size_t>(m)];
+      if (!claw_clear(base, passed, passed, 0.0, tables_->claw_radius_m[i])) return LegFault::kBeam;
     }
     p_base = above.p_base_wheel + share * (sample.p_base_wheel - above.p_base_wheel);
     stance.p_world_wheel[i] = world(p_base);
