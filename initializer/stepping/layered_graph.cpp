@@ -148,7 +148,7 @@ bool LayeredGraph::stretched_feasible(std::int32_t index, std::size_t support_cl
   const Stance& stance = stance_of(index);
   const Record& record = records_[static_cast<std::size_t>(index)];
   const SupportClass& support = kSupportClasses[support_class];
-  if (!stance.allows(0) || !stance.allows(support.lifted)) return false;
+  if (!stance.may_lift(support.lifted)) return false;
   const double wanted_m = demand_at(record.layer).margin_m;
   const auto on_bucket = check_->margin_on_bucket(
       frame_of(record), stance, support.lifted,
@@ -220,13 +220,14 @@ void LayeredGraph::expand(std::int32_t index) {
   }
   const Stance& stance = stance_of(node.record);
   if (support != 0) {
+    if (!stance.may_lift(kSupportClasses[support].lifted)) return;
     if (bucket >= 0 && !stretched_feasible(node.record, support, bucket)) return;
     push(node_at(node.record, 0, -1), node.cost + static_cast<float>(settings_.lift_cost_m), index,
          false);
     return;
   }
   for (std::size_t c = 1; c < kNumSupportClasses; ++c) {
-    if (!stance.allows(kSupportClasses[c].lifted)) continue;
+    if (!stance.may_lift(kSupportClasses[c].lifted)) continue;
     const int side = kSupportClasses[c].bucket_side;
     if (side < 0) {
       push(node_at(node.record, c, -1), node.cost + static_cast<float>(settings_.lift_cost_m),
