@@ -122,9 +122,9 @@ bool StanceCheck::sweep_is_clear(const BaseFrame& base, const LegSweep& sweep, i
       return false;
     }
     const Eigen::Vector3d p = base * passed.p_base_wheel;
-    if ((p - p_world_wheel).head<2>().norm() < kFootholdM) continue;
-    if (p.z() - tables_->radius_m[i] - swing_m - kBallM <
-        ground_->dilated_top_side_m(p.x(), p.y())) {
+    const bool swings = (p - p_world_wheel).head<2>().norm() >= kFootholdM;
+    const double clearance_m = swings ? swing_m + kBallM : -kBallM;
+    if (p.z() - tables_->radius_m[i] - clearance_m < ground_->dilated_top_side_m(p.x(), p.y())) {
       return false;
     }
   }

@@ -28,7 +28,7 @@ struct StanceClearances {
   double swing_m = 0.10;  ///< of a lifted tyre above the ground
   double belly_m = 0.05;
   [[nodiscard]] StanceClearances inflated(double by_m) const noexcept {
-    return {edge_m + 2.0 * by_m, swing_m + by_m, belly_m + by_m};
+    return {edge_m + 2.0 * by_m, swing_m + 2.0 * by_m, belly_m + by_m};
   }
 };
 
