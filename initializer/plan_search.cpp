@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "initializer/internal/direct_paths.hpp"
+#include "initializer/internal/squared_paths.hpp"
 #include "initializer/shorten_path.hpp"
 #include "initializer/timing.hpp"
 #include "initializer/verify_plan.hpp"
@@ -190,7 +191,24 @@ Result<void> PlanSearch::try_direct_paths() {
   if (auto built = build_certifier(); !built) return built;
   if (!settings_.ablation.certificate_first) return {};
   for (const DrivePath& path : direct) {
-    if (consider_stepping(path)) break;
+    if (consider_stepping(path)) return {};
+  }
+  if (!settings_.ablation.alignment) return {};
+  constexpr std::size_t kMaxSquaredPaths = 6;
+  const PoseFootholds footholds = [this](const Pose2& pose, double curvature_1_m) {
+    switch (certifier_->admits(pose, curvature_1_m)) {
+      case Certifier::Admission::kOnFourWheels:
+        return Footholds::kAllWheels;
+      case Certifier::Admission::kNeedsStepping:
+        return Footholds::kSomeWheels;
+      case Certifier::Admission::kRefused:
+        break;
+    }
+    return Footholds::kNone;
+  };
+  for (const DrivePath& path : squared_paths(terrain_, task_.start, task_.goal, search_settings_,
+                                             footholds, kMaxSquaredPaths)) {
+    if (out_of_budget() || consider_stepping(path)) break;
   }
   return {};
 }
