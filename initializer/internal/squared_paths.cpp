@@ -6,8 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include "initializer/internal/direct_paths.hpp"
-
 namespace wex {
 namespace {
 
@@ -90,22 +88,97 @@ Line line_through(const Edge& edge, double yaw_rad, double length_m,
   return line;
 }
 
-/// The cheapest way on four wheels.
-std::optional<DrivePath> drive(const Pose2& from, const Pose2& to, const SearchSettings& settings,
-                               const PoseFootholds& footholds) {
-  for (DrivePath& path : direct_paths(from, to, settings.turning_radius_m, settings.cost)) {
-    const bool drivable = path_is_valid(
-        path, settings.subnode_spacing_m, [&](const Pose2& pose, double curvature_1_m) {
+/// Ways around one end of the path, a few arcs long, that never lift a wheel.
+class Manoeuvres {
+ public:
+  struct Way {
+    Pose2 pose;      ///< where it leads, or, at the goal, comes from
+    DrivePath path;  ///< in driving order; empty: none
+    double cost_m = 0.0;
+  };
+
+  Manoeuvres(const Pose2& end, bool is_goal, const SearchSettings& settings,
+             const PoseFootholds& footholds)
+      : settings_(settings),
+        is_goal_(is_goal),
+        drivable_([&footholds](const Pose2& pose, double curvature_1_m) {
           return footholds(pose, curvature_1_m) == Footholds::kAllWheels;
-        });
-    if (drivable) return std::move(path);
+        }) {
+    ways_.push_back({end, {}, 0.0});
+    for (int arcs = 0; arcs < kArcs; ++arcs) {
+      const std::size_t known = ways_.size();
+      for (std::size_t k = first_leaf_; k < known; ++k) extend(k);
+      first_leaf_ = known;
+    }
+    std::stable_sort(ways_.begin(), ways_.end(),
+                     [](const Way& a, const Way& b) { return a.cost_m < b.cost_m; });
   }
-  return std::nullopt;
-}
+
+  /// The cheapest found between the end and another pose.
+  [[nodiscard]] std::optional<DrivePath> connect(const Pose2& other) const {
+    std::optional<DrivePath> best;
+    double least_m = 1e9;
+    for (const Way& way : ways_) {
+      if (way.cost_m + std::hypot(other.x_m - way.pose.x_m, other.y_m - way.pose.y_m) >= least_m) {
+        continue;
+      }
+      const DrivePath link = is_goal_
+                                 ? reeds_shepp_path(other, way.pose, settings_.turning_radius_m)
+                                 : reeds_shepp_path(way.pose, other, settings_.turning_radius_m);
+      DrivePath path = is_goal_ ? link : way.path;
+      append_path(path, is_goal_ ? way.path : link);
+      const double cost_m = path_cost_m(path, settings_.cost);
+      if (cost_m >= least_m || !path_is_valid(link, settings_.subnode_spacing_m, drivable_)) {
+        continue;
+      }
+      least_m = cost_m;
+      best = std::move(path);
+    }
+    return best;
+  }
+
+ private:
+  static constexpr int kArcs = 2;
+  static constexpr std::array<double, 4> kLengthsM = {1.5, 3.0, 5.0, 7.5};
+
+  void extend(std::size_t from) {
+    for (const double turn : {-1.0, 0.0, 1.0}) {
+      for (const double gear : {1.0, -1.0}) {
+        double driven_m = 0.0;
+        for (const double length_m : kLengthsM) {
+          const Way& way = ways_[from];
+          const PathSegment segment{way.pose, turn / settings_.turning_radius_m, gear * length_m};
+          const PathSegment added{pose_along(segment, gear * driven_m), segment.curvature_1_m,
+                                  gear * (length_m - driven_m)};
+          if (!path_is_valid({added}, settings_.subnode_spacing_m, drivable_)) break;
+          driven_m = length_m;
+          const Pose2 end = pose_along(segment, segment.length_m);
+          Way longer;
+          longer.pose = end;
+          if (is_goal_) {
+            longer.path = {{end, segment.curvature_1_m, -segment.length_m}};
+            append_path(longer.path, way.path);
+          } else {
+            longer.path = way.path;
+            append_path(longer.path, {segment});
+          }
+          longer.cost_m = path_cost_m(longer.path, settings_.cost);
+          ways_.push_back(std::move(longer));
+        }
+      }
+    }
+  }
+
+  const SearchSettings& settings_;
+  bool is_goal_;
+  PoseValidity drivable_;
+  std::vector<Way> ways_;
+  std::size_t first_leaf_ = 0;
+};
 
 /// Start to line, along it across all that needs stepping, line to goal.
-std::optional<DrivePath> path_over(const Line& line, const Pose2& start, const Pose2& goal,
-                                   const SearchSettings& settings, const PoseFootholds& footholds) {
+std::optional<DrivePath> path_over(const Line& line, const Manoeuvres& from_start,
+                                   const Manoeuvres& to_goal) {
   const std::vector<Footholds>& feet = line.footholds;
   // Back from the edge to the last place where all wheels stand.
   std::size_t stands = std::min(line.edge, feet.size() - 1);
@@ -123,7 +196,7 @@ std::optional<DrivePath> path_over(const Line& line, const Pose2& start, const P
       break;
     }
     if (feet[k] != Footholds::kAllWheels) continue;
-    path = drive(start, line.at(k), settings, footholds);
+    path = from_start.connect(line.at(k));
     joined = k;
     if (path) break;
   }
@@ -136,7 +209,7 @@ std::optional<DrivePath> path_over(const Line& line, const Pose2& start, const P
     stood = feet[k] == Footholds::kAllWheels ? stood + 1 : 0;
     constexpr std::size_t kLeast = 3, kEvery = 4;
     if (!stepped || stood < kLeast || (stood - kLeast) % kEvery != 0) continue;
-    const auto rest = drive(line.at(k), goal, settings, footholds);
+    const auto rest = to_goal.connect(line.at(k));
     if (!rest) continue;
     append_path(*path, {{line.at(joined), 0.0, static_cast<double>(k - joined) * kLineStepM}});
     append_path(*path, *rest);
@@ -151,10 +224,12 @@ std::vector<DrivePath> squared_paths(const TerrainMap& terrain, const Pose2& sta
                                      const Pose2& goal, const SearchSettings& settings,
                                      const PoseFootholds& footholds, std::size_t max_paths) {
   const double length_m = std::hypot(goal.x_m - start.x_m, goal.y_m - start.y_m);
+  const Manoeuvres from_start(start, false, settings, footholds);
+  const Manoeuvres to_goal(goal, true, settings, footholds);
   std::vector<DrivePath> paths;
   for (const Edge& edge : edges_between(terrain, start, goal)) {
-    const Line line = line_through(edge, edge.yaw_rad, length_m, footholds);
-    if (auto path = path_over(line, start, goal, settings, footholds)) {
+    const Line line = line_through(edge, edge.yaw_rad, length_m + kReachM, footholds);
+    if (auto path = path_over(line, from_start, to_goal)) {
       paths.push_back(*std::move(path));
     }
   }
