@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "initializer/internal/direct_paths.hpp"
+#include "initializer/internal/squared_paths.hpp"
 #include "initializer/shorten_path.hpp"
-#include "initializer/stepping/stepping_motion.hpp"
 #include "initializer/timing.hpp"
 #include "initializer/verify_plan.hpp"
 #include "initializer/whole_body.hpp"
@@ -32,6 +32,28 @@ constexpr int kUnluckyIterations = 400;  // without a path: as good as a rejecti
 constexpr double kAlignmentRad = 0.17453292519943295;  // 10 degrees
 constexpr double kGradientStepM = 0.5;  // of the signed distance, to see where an edge runs
 constexpr double kClearGradient = 0.3;
+
+// The state of a sequence that a node of its motion belongs to, as far as the node shows.
+std::size_t state_like(const CertifiedSequence& sequence, const WholeBodyNode& node) {
+  std::uint8_t lifted = 0;
+  for (std::size_t i = 0; i < kNumWheels; ++i) {
+    if (!node.contacts[i]) lifted |= static_cast<std::uint8_t>(1U << i);
+  }
+  constexpr double kOtherSupportM = 1.0, kLeverM = 2.4;
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < sequence.states.size(); ++k) {
+    const BaseCoordinates off = sequence.states[k].base - node.q.head<kNumBaseCoordinates>();
+    const double distance =
+        off.head<3>().norm() + kLeverM * std::abs(off[kBasePitch]) +
+        ((sequence.states[k].support.lifted & lifted) == lifted ? 0.0 : kOtherSupportM);
+    if (distance < least) {
+      least = distance;
+      nearest = k;
+    }
+  }
+  return nearest;
+}
 
 }  // namespace
 
@@ -148,7 +170,10 @@ Result<void> PlanSearch::build_certifier() {
   certificate.stepping_share *= settings_.stepping_penalty;
   auto built = Certifier::build(terrain_, machine_, settings_, certificate);
   if (!built) return tl::unexpected<Error>(built.error());
+  auto motion = SteppingMotion::build(terrain_, machine_, settings_);
+  if (!motion) return tl::unexpected<Error>(motion.error());
   certifier_.emplace(*std::move(built));
+  motion_.emplace(*std::move(motion));
   return {};
 }
 
@@ -166,7 +191,24 @@ Result<void> PlanSearch::try_direct_paths() {
   if (auto built = build_certifier(); !built) return built;
   if (!settings_.ablation.certificate_first) return {};
   for (const DrivePath& path : direct) {
-    if (consider_stepping(path)) break;
+    if (consider_stepping(path)) return {};
+  }
+  if (!settings_.ablation.alignment) return {};
+  constexpr std::size_t kMaxSquaredPaths = 6;
+  const PoseFootholds footholds = [this](const Pose2& pose, double curvature_1_m) {
+    switch (certifier_->admits(pose, curvature_1_m)) {
+      case Certifier::Admission::kOnFourWheels:
+        return Footholds::kAllWheels;
+      case Certifier::Admission::kNeedsStepping:
+        return Footholds::kSomeWheels;
+      case Certifier::Admission::kRefused:
+        break;
+    }
+    return Footholds::kNone;
+  };
+  for (const DrivePath& path : squared_paths(terrain_, task_.start, task_.goal, search_settings_,
+                                             footholds, kMaxSquaredPaths)) {
+    if (out_of_budget() || consider_stepping(path)) break;
   }
   return {};
 }
@@ -269,35 +311,46 @@ bool PlanSearch::consider_driving(const DrivePath& path) {
 
 bool PlanSearch::consider_stepping(const DrivePath& path) {
   if (best_ && path_cost_m(path, search_settings_.cost) >= best_->cost) return true;
-  auto sequence = certifier_->certify(path, standing_at_start_);
+  std::optional<Plan> plan;
+  auto sequence =
+      certifier_->certify(path, standing_at_start_, [&](const CertifiedSequence& candidate) {
+        return out_of_budget() ? std::nullopt : objection_to(candidate, plan);
+      });
   if (!sequence) {
     reject(kStepping, sequence.error().where, sequence.error().why);
     return false;
   }
-  return consider_sequence(*std::move(sequence));
+  return !plan || keep(*std::move(plan), *std::move(sequence));
 }
 
 bool PlanSearch::consider_sequence(CertifiedSequence sequence) {
-  if (best_ && sequence.cost >= best_->cost) return true;
-  auto nodes = stepping_motion(terrain_, machine_, settings_, sequence);
-  if (!nodes) {
-    reject(kStepping, sequence.stations[sequence.states[nodes.error().state].station].pose,
-           nodes.error().why);
+  std::optional<Plan> plan;
+  if (const auto objection = objection_to(sequence, plan)) {
+    reject(kStepping, sequence.stations[sequence.states[objection->state].station].pose,
+           objection->why);
     return false;
   }
-  Plan plan;
-  plan.nodes = *std::move(nodes);
-  plan.path_length_m = path_length_m(sequence.path);
-  plan.cost = sequence.cost;
-  plan.task = task_;
-  const PlanVerdict verdict = verify_plan(terrain_, machine_, plan, settings_);
+  return !plan || keep(*std::move(plan), std::move(sequence));
+}
+
+// What keeps a sequence from being a verified plan. No plan is made of one that costs too much.
+std::optional<Objection> PlanSearch::objection_to(const CertifiedSequence& sequence,
+                                                  std::optional<Plan>& plan) const {
+  if (best_ && sequence.cost >= best_->cost) return std::nullopt;
+  auto nodes = motion_->nodes(sequence);
+  if (!nodes) return Objection{nodes.error().state, nodes.error().why, nodes.error().arm};
+  Plan made;
+  made.nodes = *std::move(nodes);
+  made.path_length_m = path_length_m(sequence.path);
+  made.cost = sequence.cost;
+  made.task = task_;
+  const PlanVerdict verdict = verify_plan(terrain_, machine_, made, settings_);
   if (!verdict.ok) {
-    const Eigen::VectorXd& q = plan.nodes[verdict.node].q;
-    reject(kStepping, {q[kBaseX], q[kBaseY], q[kBaseYaw]}, verdict.violation);
-    return false;
+    return Objection{state_like(sequence, made.nodes[verdict.node]), verdict.violation};
   }
-  plan.min_stability_margin_m = verdict.min_stability_margin_m;
-  return keep(std::move(plan), std::move(sequence));
+  made.min_stability_margin_m = verdict.min_stability_margin_m;
+  plan = std::move(made);
+  return std::nullopt;
 }
 
 bool PlanSearch::keep(Plan plan, std::optional<CertifiedSequence> sequence) {
@@ -311,7 +364,9 @@ bool PlanSearch::keep(Plan plan, std::optional<CertifiedSequence> sequence) {
 }
 
 void PlanSearch::reject(Kind kind, const Pose2& where, const std::string& why) {
-  if (getenv("WEXDBG")) fprintf(stderr, "REJ %d %.2f (%.2f %.2f %.2f) %s\n", (int)kind, elapsed_s(), where.x_m+terrain_.map_origin_m().x(), where.y_m+terrain_.map_origin_m().y(), where.yaw_rad, why.c_str());
+  fprintf(stderr, "REJ %d %.2f (%.2f %.2f %.2f) %s\n", (int)kind, elapsed_s(),
+          where.x_m + terrain_.map_origin_m().x(), where.y_m + terrain_.map_origin_m().y(),
+          where.yaw_rad, why.c_str());
   census_.add({where, why, kind == kStepping});
   Tree& tree = trees_[kind];
   ++tree.num_rejections;

@@ -12,6 +12,7 @@
 #include "initializer/search_census.hpp"
 #include "initializer/stepping/certificate.hpp"
 #include "initializer/stepping/certified_tree.hpp"
+#include "initializer/stepping/stepping_motion.hpp"
 
 namespace wex {
 
@@ -67,6 +68,8 @@ class PlanSearch {
   bool consider_driving(const DrivePath& path);
   bool consider_stepping(const DrivePath& path);
   bool consider_sequence(CertifiedSequence sequence);
+  [[nodiscard]] std::optional<Objection> objection_to(const CertifiedSequence& sequence,
+                                                      std::optional<Plan>& plan) const;
   bool keep(Plan plan, std::optional<CertifiedSequence> sequence);
   void reject(Kind kind, const Pose2& where, const std::string& why);
   [[nodiscard]] Plan finished();
@@ -77,7 +80,8 @@ class PlanSearch {
   const PlanSettings& settings_;
   const std::function<void(const PlanProgress&)>& observer_;
   const PoseCheck& check_;
-  std::optional<Certifier> certifier_;  ///< built when driving does not do
+  std::optional<Certifier> certifier_;  ///< built when driving does not do, as is the next
+  std::optional<SteppingMotion> motion_;
   BaseCoordinates standing_at_start_;
   SearchSettings search_settings_;
   std::array<PoseCheck::Steering, 3> steering_;  ///< right, straight, left

@@ -247,7 +247,7 @@ Result<BucketPath, MotionFailure> bucket_path(const ArmKinematics& arm, const St
           std::max_element(table.begin() + static_cast<std::ptrdiff_t>(knot * cells),
                            table.begin() + static_cast<std::ptrdiff_t>((knot + 1) * cells),
                            [](const Cell& a, const Cell& b) { return a.fault < b.fault; });
-      MotionFailure failure{run.knots[knot].state, describe(furthest->fault)};
+      MotionFailure failure{run.knots[knot].state, describe(furthest->fault), true};
       return tl::unexpected<MotionFailure>(std::move(failure));
     }
     bool passes = true;

@@ -26,12 +26,18 @@ struct Certifier::Impl {
   const CertificateSettings settings;
 
   [[nodiscard]] Result<CertifiedSequence, CertificateFailure> certify(
-      const DrivePath& path, bool or_furthest, const std::optional<BaseCoordinates>& begin) const;
+      const DrivePath& path, bool or_furthest, const std::optional<BaseCoordinates>& begin,
+      const SequenceJudge& judge) const;
+  [[nodiscard]] Result<CertifiedSequence, CertificateFailure> accepted(
+      const DrivePath& path, const PathGrid& grid, LayeredGraph& graph, LayeredGraph::Answer answer,
+      bool from_nominal, const SequenceJudge& judge) const;
   [[nodiscard]] CertifiedSequence sequence_of(const DrivePath& path, PathGrid grid,
                                               const LayeredGraph::Answer& answer) const;
 };
 
 namespace {
+
+constexpr int kMaxObjections = 12;
 
 /// Exact joints for a table posture, whose place is up to half a cell away: the attitude gives way
 /// first, then the telescope.
@@ -112,7 +118,8 @@ CertifiedSequence Certifier::Impl::sequence_of(const DrivePath& path, PathGrid g
 }
 
 Result<CertifiedSequence, CertificateFailure> Certifier::Impl::certify(
-    const DrivePath& path, bool or_furthest, const std::optional<BaseCoordinates>& begin) const {
+    const DrivePath& path, bool or_furthest, const std::optional<BaseCoordinates>& begin,
+    const SequenceJudge& judge) const {
   WEX_EXPECTS(!path.empty());
   constexpr double kFineReachM = 0.8;
   PathGrid grid = PathGrid::of(check, path, plan, settings, begin);
@@ -128,12 +135,34 @@ Result<CertifiedSequence, CertificateFailure> Certifier::Impl::certify(
       PathGrid fine =
           PathGrid::of(check, path, plan, settings, begin, {s_m - kFineReachM, s_m + kFineReachM});
       LayeredGraph closer(check, fine, plan, settings);
-      const LayeredGraph::Answer second = closer.search(!begin.has_value(), false);
-      if (!second.states.empty()) return sequence_of(path, std::move(fine), second);
+      LayeredGraph::Answer second = closer.search(!begin.has_value(), false);
+      if (!second.states.empty()) {
+        return accepted(path, fine, closer, std::move(second), !begin.has_value(), judge);
+      }
     }
     if (answer.states.empty()) return tl::unexpected<CertificateFailure>(std::move(failure));
   }
-  return sequence_of(path, std::move(grid), answer);
+  return accepted(path, grid, graph, std::move(answer), !begin.has_value(), judge);
+}
+
+// What the judge objects to is banned from the graph, which keeps all else it has found out.
+Result<CertifiedSequence, CertificateFailure> Certifier::Impl::accepted(
+    const DrivePath& path, const PathGrid& grid, LayeredGraph& graph, LayeredGraph::Answer answer,
+    bool from_nominal, const SequenceJudge& judge) const {
+  CertificateFailure failure;
+  for (int objections = 0; objections <= kMaxObjections; ++objections) {
+    if (answer.states.empty()) break;
+    CertifiedSequence sequence = sequence_of(path, grid, answer);
+    const std::optional<Objection> objection = judge ? judge(sequence) : std::nullopt;
+    if (!objection) return sequence;
+    const GraphState& state = answer.states[objection->state];
+    if (objections == 0) {
+      failure = {state.layer, grid.layers[state.layer].pose, objection->why};
+    }
+    graph.ban(state, objection->bucket);
+    answer = graph.search(from_nominal, false);
+  }
+  return tl::unexpected<CertificateFailure>(std::move(failure));
 }
 
 Certifier::Certifier(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -149,14 +178,15 @@ Result<Certifier> Certifier::build(const TerrainMap& terrain, const MachineModel
 }
 
 Result<CertifiedSequence, CertificateFailure> Certifier::certify(
-    const DrivePath& path, const std::optional<BaseCoordinates>& begin) const {
-  return impl_->certify(path, false, begin);
+    const DrivePath& path, const std::optional<BaseCoordinates>& begin,
+    const SequenceJudge& judge) const {
+  return impl_->certify(path, false, begin, judge);
 }
 
 std::optional<CertifiedSequence> Certifier::certify_prefix(
     const DrivePath& path, double min_progress_m,
     const std::optional<BaseCoordinates>& begin) const {
-  auto sequence = impl_->certify(path, true, begin);
+  auto sequence = impl_->certify(path, true, begin, {});
   if (!sequence || sequence->stations.back().s_m <= min_progress_m) return std::nullopt;
   return *std::move(sequence);
 }

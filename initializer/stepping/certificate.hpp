@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -70,6 +71,15 @@ struct CertificateSettings {
   double inflation_m = 0.02;    ///< of clearances in the graph, so that poses between states pass
 };
 
+/// A state of a sequence that cannot be realised, and why.
+struct Objection {
+  std::size_t state = 0;
+  std::string why;      ///< part of a sentence
+  bool bucket = false;  ///< it is the bucket's point that does not do
+};
+/// Told of a sequence; nothing if it will do.
+using SequenceJudge = std::function<std::optional<Objection>(const CertifiedSequence&)>;
+
 /// Decides whether the machine can follow an SE(2) path, stepping where it must, by A* over
 /// station x base height x pitch x support. Roll and the middle of the pitch grid follow the
 /// ground. Tables are built once; queries do not change it and are safe for concurrent use.
@@ -87,8 +97,10 @@ class Certifier {
   /// The sequence that follows the whole path at the lowest cost, starting and ending on four
   /// wheels; poses between its states were checked too.
   ///   begin  base height, pitch and roll to start from, the nominal ones where not given
+  ///   judge  a state it objects to is avoided, and the next best sequence told to it, some times
   [[nodiscard]] Result<CertifiedSequence, CertificateFailure> certify(
-      const DrivePath& path, const std::optional<BaseCoordinates>& begin = std::nullopt) const;
+      const DrivePath& path, const std::optional<BaseCoordinates>& begin = std::nullopt,
+      const SequenceJudge& judge = {}) const;
 
   /// Like certify, but a path that cannot be followed to its end gives the sequence up to its last
   /// four-wheel state, path and stations cut there; nullopt if that is not beyond

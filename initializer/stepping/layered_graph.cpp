@@ -130,6 +130,30 @@ double LayeredGraph::margin_m(const BaseFrame& base, const Stance& stance,
              : check_->margin_on_wheels(base, stance);
 }
 
+void LayeredGraph::ban(const GraphState& state, bool bucket) {
+  const std::int32_t at = record_at(state.layer, state.z, state.pitch);
+  const bool whole_point = bucket && state.bucket >= 0;
+  if (whole_point) {
+    banned_buckets_.emplace_back(state.support_class, state.bucket);
+  } else {
+    records_[static_cast<std::size_t>(at)].banned |=
+        static_cast<std::uint16_t>(1U << state.support_class);
+  }
+  for (Node& node : nodes_) {
+    if (class_of(node) != state.support_class) continue;
+    if (whole_point ? bucket_of(node) == state.bucket : node.record == at) node.feasible = 0;
+  }
+}
+
+bool LayeredGraph::is_banned(const Node& node) const {
+  const std::size_t support = class_of(node);
+  if ((records_[static_cast<std::size_t>(node.record)].banned >> support & 1U) != 0) return true;
+  const int bucket = bucket_of(node);
+  return std::any_of(banned_buckets_.begin(), banned_buckets_.end(), [&](const auto& banned) {
+    return banned.first == support && banned.second == bucket;
+  });
+}
+
 bool LayeredGraph::feasible(std::int32_t index) {
   Node& node = nodes_[static_cast<std::size_t>(index)];
   if (node.feasible >= 0) return node.feasible != 0;
@@ -137,8 +161,9 @@ bool LayeredGraph::feasible(std::int32_t index) {
   const Record& record = records_[static_cast<std::size_t>(node.record)];
   const SupportClass& support = kSupportClasses[class_of(node)];
   const double wanted_m = demand_at(record.layer).margin_m;
-  const bool ok = stance.allows(support.lifted) && margin_m(frame_of(record), stance, support,
-                                                            bucket_of(node), wanted_m) >= wanted_m;
+  const bool ok =
+      stance.allows(support.lifted) && !is_banned(node) &&
+      margin_m(frame_of(record), stance, support, bucket_of(node), wanted_m) >= wanted_m;
   node.feasible = ok ? 1 : 0;
   return ok;
 }
@@ -148,7 +173,7 @@ bool LayeredGraph::stretched_feasible(std::int32_t index, std::size_t support_cl
   const Stance& stance = stance_of(index);
   const Record& record = records_[static_cast<std::size_t>(index)];
   const SupportClass& support = kSupportClasses[support_class];
-  if (!stance.allows(0) || !stance.allows(support.lifted)) return false;
+  if (!stance.may_lift(support.lifted)) return false;
   const double wanted_m = demand_at(record.layer).margin_m;
   const auto on_bucket = check_->margin_on_bucket(
       frame_of(record), stance, support.lifted,
@@ -220,13 +245,14 @@ void LayeredGraph::expand(std::int32_t index) {
   }
   const Stance& stance = stance_of(node.record);
   if (support != 0) {
+    if (!stance.may_lift(kSupportClasses[support].lifted)) return;
     if (bucket >= 0 && !stretched_feasible(node.record, support, bucket)) return;
     push(node_at(node.record, 0, -1), node.cost + static_cast<float>(settings_.lift_cost_m), index,
          false);
     return;
   }
   for (std::size_t c = 1; c < kNumSupportClasses; ++c) {
-    if (!stance.allows(kSupportClasses[c].lifted)) continue;
+    if (!stance.may_lift(kSupportClasses[c].lifted)) continue;
     const int side = kSupportClasses[c].bucket_side;
     if (side < 0) {
       push(node_at(node.record, c, -1), node.cost + static_cast<float>(settings_.lift_cost_m),

@@ -63,6 +63,9 @@ class LayeredGraph {
   ///   or_furthest   instead of no answer: up to the furthest state on four wheels
   [[nodiscard]] Answer search(bool from_nominal, bool or_furthest);
 
+  /// Never again this state on its support, or its bucket point with these wheels lifted.
+  void ban(const GraphState& state, bool bucket);
+
   /// Why nothing goes beyond a layer, as part of a sentence.
   [[nodiscard]] std::string why_not_beyond(std::size_t layer);
 
@@ -81,6 +84,7 @@ class LayeredGraph {
     std::int32_t layer, pose;
     std::int16_t z, pitch;
     bool judged;
+    std::uint16_t banned;                    // bit c: support class c
     std::array<std::int32_t, 3> first_node;  // without bucket; bucket ahead; behind
     Stance stance;
   };
@@ -108,6 +112,7 @@ class LayeredGraph {
   const Stance& stance_of(std::int32_t record);
   [[nodiscard]] BaseFrame frame_of(const Record& record) const;
   [[nodiscard]] bool feasible(std::int32_t node);
+  [[nodiscard]] bool is_banned(const Node& node) const;
   [[nodiscard]] bool stretched_feasible(std::int32_t record, std::size_t support_class, int bucket);
   void estimate_costs(bool reach_the_end);
   void estimate_layer(std::size_t layer);
@@ -130,6 +135,7 @@ class LayeredGraph {
   std::vector<Node> nodes_;
   std::vector<Entry> queue_;
   std::unordered_set<std::uint64_t> banned_;
+  std::vector<std::pair<std::size_t, int>> banned_buckets_;       // support class, bucket point
   std::vector<std::array<float, kNumSupportClasses>> rest_cost_;  // per pose and class
   std::size_t dead_layer_ = 0;  // the last from which no support leads to the end
   std::size_t last_layer_ = 0;

@@ -17,7 +17,9 @@ constexpr double kCounterWeightClearM = 0.3;
 constexpr double kBucketHalfWidthM = 0.6;  // where the ends of its edge are looked at
 constexpr double kBucketUnevenM = 0.15;    // ground under the ends against the middle
 constexpr double kClawClearM = 0.05;
-constexpr int kClawSamples = 5;  // a claw is 0.9 m long
+constexpr double kFootholdM = 0.28;  // beyond which a wheel swings and no longer lifts off
+constexpr double kBallM = 0.02;      // a tyre lowered as a ball beside steep edges
+constexpr int kClawSamples = 5;      // a claw is 0.9 m long
 constexpr int kBeamSamples = 3, kForearmSamples = 4, kBucketSamples = 3;
 constexpr double kResidualM = 0.004;  // wheel centre against the ground, before it is refined
 constexpr int kMaxRefinements = 12;
@@ -95,7 +97,12 @@ bool StanceCheck::claw_clear(const BaseFrame& base, const LegSample& high, const
   const auto at = [&](std::size_t end) -> Eigen::Vector3d {
     return base * ((1.0 - share) * high.p_base_claw[end] + share * low.p_base_claw[end]);
   };
-  const Eigen::Vector3d from = at(0), step = (at(1) - from) / kClawSamples;
+  const Eigen::Vector3d from = at(0), to = at(1), step = (to - from) / kClawSamples;
+  const Eigen::Vector3d middle = 0.5 * (from + to);
+  if (std::min(from.z(), to.z()) - radius_m - kClawClearM >
+      ground_->ground_top_m(middle.x(), middle.y())) {
+    return true;
+  }
   for (int k = 0; k <= kClawSamples; ++k) {
     const Eigen::Vector3d x = from + k * step;
     if (x.z() - radius_m - kClawClearM < ground_->highest_m(x.x(), x.y())) return false;
@@ -103,8 +110,29 @@ bool StanceCheck::claw_clear(const BaseFrame& base, const LegSample& high, const
   return true;
 }
 
+// Between the highest sample and the one before `end`, where the wheel stands: beside its foothold
+// the wheel keeps its clearance, and a claw stands out farthest while it is level.
+bool StanceCheck::sweep_is_clear(const BaseFrame& base, const LegSweep& sweep, int leg, int end,
+                                 const Eigen::Vector3d& p_world_wheel,
+                                 double swing_m) const noexcept {
+  const auto i = static_cast<std::size_t>(leg);
+  for (int n = 0; n < end; ++n) {
+    const LegSample& passed = sweep.samples[static_cast<std::size_t>(n)];
+    if (sweep.has_claw && !claw_clear(base, passed, passed, 0.0, tables_->claw_radius_m[i])) {
+      return false;
+    }
+    const Eigen::Vector3d p = base * passed.p_base_wheel;
+    const bool swings = (p - p_world_wheel).head<2>().norm() >= kFootholdM;
+    const double clearance_m = swings ? swing_m + kBallM : -kBallM;
+    if (p.z() - tables_->radius_m[i] - clearance_m < ground_->dilated_top_side_m(p.x(), p.y())) {
+      return false;
+    }
+  }
+  return true;
+}
+
 LegFault StanceCheck::lower_leg(const BaseFrame& base, const LegSweep& sweep, int leg,
-                                double edge_m, Stance& stance) const noexcept {
+                                const StanceClearances& clearances, Stance& stance) const noexcept {
   const auto i = static_cast<std::size_t>(leg);
   const double radius_m = tables_->radius_m[i];
   const auto world = [&](const Eigen::Vector3d& p_base) -> Eigen::Vector3d {
@@ -151,7 +179,7 @@ LegFault StanceCheck::lower_leg(const BaseFrame& base, const LegSweep& sweep, in
       p_wheel = world(p_base);
       rest = gap(p_wheel);
     }
-    if (ground_->clear_m(p_wheel.x(), p_wheel.y()) <= edge_m) return LegFault::kEdge;
+    if (ground_->clear_m(p_wheel.x(), p_wheel.y()) <= clearances.edge_m) return LegFault::kEdge;
     // A disc on ground that is tilted along its axle stands on its edge (wheel_rest).
     const Eigen::Vector2d slope = ground_->dilated_gradient(p_wheel.x(), p_wheel.y());
     Eigen::Vector3d normal(-slope.x(), -slope.y(), 1.0);
@@ -176,6 +204,9 @@ LegFault StanceCheck::lower_leg(const BaseFrame& base, const LegSweep& sweep, in
         std::copysign(patch_shift_m(tilt, tables_->half_width_m[i]), along_axle) * axle;
     stance.moment_grounded_base[i] =
         above.moment_base + share * (sample.moment_base - above.moment_base);
+    if (sweep_is_clear(base, sweep, leg, n, stance.p_world_wheel[i], clearances.swing_m)) {
+      stance.sweep_clear |= static_cast<std::uint8_t>(1U << i);
+    }
     return LegFault::kNone;
   }
   return LegFault::kTooLow;
@@ -189,14 +220,14 @@ Stance StanceCheck::stance(const BaseFrame& base, int steering,
   for (int leg = 0; leg < kNumWheels; ++leg) {
     const auto i = static_cast<std::size_t>(leg);
     const LegSweep& sweep = tables_->legs[i][static_cast<std::size_t>(steering)];
-    stance.fault[i] = lower_leg(base, sweep, leg, clearances.edge_m, stance);
+    stance.fault[i] = lower_leg(base, sweep, leg, clearances, stance);
     if (stance.fault[i] == LegFault::kNone) stance.grounded |= static_cast<std::uint8_t>(1U << i);
 
     const LegSample& highest = sweep.samples.front();
     stance.moment_lifted_base[i] = highest.moment_base;
     const Eigen::Vector3d p = base * highest.p_base_wheel;
     const double lowest = p.z() - tables_->radius_m[i] - clearances.swing_m;
-    if (lowest >= ground_->dilated_m(p.x(), p.y()) &&
+    if (lowest >= ground_->dilated_top_side_m(p.x(), p.y()) &&
         leg_clear(base, sweep, leg, highest, highest, 0.0)) {
       stance.swing_clear |= static_cast<std::uint8_t>(1U << i);
     }

@@ -28,7 +28,7 @@ struct StanceClearances {
   double swing_m = 0.10;  ///< of a lifted tyre above the ground
   double belly_m = 0.05;
   [[nodiscard]] StanceClearances inflated(double by_m) const noexcept {
-    return {edge_m + 2.0 * by_m, swing_m + by_m, belly_m + by_m};
+    return {edge_m + 2.0 * by_m, swing_m + 2.0 * by_m, belly_m + by_m};
   }
 };
 
@@ -47,6 +47,7 @@ struct Stance {
   bool belly_clear = false;      ///< false: nothing else is filled in
   std::uint8_t grounded = 0;     ///< the wheel reaches ground it may stand on
   std::uint8_t swing_clear = 0;  ///< lifted fully, wheel and beams clear the ground
+  std::uint8_t sweep_clear = 0;  ///< grounded, and clear on its way up and down
   std::array<LegFault, kNumWheels> fault{};
   std::array<Eigen::Vector3d, kNumWheels> p_world_wheel;  ///< standing wheels' centres
   std::array<Eigen::Vector3d, kNumWheels> p_world_patch;  ///< where their tyres touch
@@ -55,6 +56,10 @@ struct Stance {
   /// All wheels can stand but those lifted, and those are clear.
   [[nodiscard]] bool allows(std::uint8_t lifted) const noexcept {
     return belly_clear && (grounded | lifted) == 0b1111 && (swing_clear & lifted) == lifted;
+  }
+  /// On four wheels, of which these can be lifted off or put down here.
+  [[nodiscard]] bool may_lift(std::uint8_t wheels) const noexcept {
+    return allows(0) && allows(wheels) && (sweep_clear & wheels) == wheels;
   }
 };
 
@@ -118,7 +123,11 @@ class StanceCheck {
                                           tables_->claw_radius_m[static_cast<std::size_t>(leg)]));
   }
   [[nodiscard]] LegFault lower_leg(const BaseFrame& base, const LegSweep& sweep, int leg,
-                                   double edge_m, Stance& stance) const noexcept;
+                                   const StanceClearances& clearances,
+                                   Stance& stance) const noexcept;
+  [[nodiscard]] bool sweep_is_clear(const BaseFrame& base, const LegSweep& sweep, int leg, int end,
+                                    const Eigen::Vector3d& p_world_wheel,
+                                    double swing_m) const noexcept;
   [[nodiscard]] Eigen::Vector3d moment_of_legs(const Stance& stance,
                                                std::uint8_t lifted) const noexcept;
   [[nodiscard]] bool beam_clear(const Eigen::Vector3d& a, const Eigen::Vector3d& b, int samples,

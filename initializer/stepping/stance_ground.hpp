@@ -21,6 +21,15 @@ class StanceGround {
     const Corner c = corner(x, y);
     return c.mix([](const Cell& cell) { return static_cast<double>(cell.dilated_m); });
   }
+  /// The same for tyres that must stay clear: at a cliff the height of its upper side.
+  [[nodiscard]] double dilated_top_side_m(double x, double y) const noexcept {
+    constexpr float kCliffM = 0.25F;
+    const Corner c = corner(x, y);
+    const auto [low, high] = std::minmax(
+        {c.south[0].dilated_m, c.south[1].dilated_m, c.north[0].dilated_m, c.north[1].dilated_m});
+    if (high - low > kCliffM) return static_cast<double>(high);
+    return c.mix([](const Cell& cell) { return static_cast<double>(cell.dilated_m); });
+  }
   /// Gradient of the dilated height over the cell around.
   [[nodiscard]] Eigen::Vector2d dilated_gradient(double x, double y) const noexcept;
   /// Distance to ground no wheel may stand on, positive on good ground (the map's signed distance).

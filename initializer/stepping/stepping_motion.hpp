@@ -13,6 +13,7 @@ namespace wex {
 struct MotionFailure {
   std::size_t state = 0;  ///< index into CertifiedSequence::states
   std::string why;        ///< part of a sentence
+  bool arm = false;       ///< another bucket point may do
 };
 
 /// How limbs move when they are not simply driving.

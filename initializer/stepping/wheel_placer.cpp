@@ -182,7 +182,7 @@ std::optional<double> WheelPlacer::lowest_clear_rad(const BaseCoordinates& base,
   const LegTable::Steer steer(table.steering_rad(upper_rad(wheel), curvature_1_m));
   const auto clearance = [&](double hfe) {
     const Eigen::Vector3d p = T_world_base * table.p_base_wheel(hfe, steer);
-    return p.z() - machine_->legs[i].radius_m - ground_.dilated_m(p.x(), p.y());
+    return p.z() - machine_->legs[i].radius_m - ground_.dilated_top_side_m(p.x(), p.y());
   };
   double above = upper_rad(wheel);
   double last = clearance(above);

@@ -153,6 +153,30 @@ Grid filled_from_neighbours(Grid grid) {
   return grid;
 }
 
+/// Ground a tyre may rest on, carried on for some cells where it ends at a cliff: a spline through
+/// the cliff would swing about the ground beside it by centimetres.
+Grid without_cliffs(Grid dilated, const std::vector<std::uint8_t>& traversable,
+                    const std::vector<std::int32_t>& nearest_traversable) {
+  constexpr double kReachCells = 4.5;  // a jump dies away by 0.27 from cell to cell
+  constexpr double kJumpM = 0.25, kSteepest = 0.7;
+  const Grid before = dilated;
+  const auto size_x = static_cast<std::size_t>(dilated.size_x);
+  for (std::size_t cell = 0; cell < traversable.size(); ++cell) {
+    if (traversable[cell] != 0 || nearest_traversable[cell] < 0) continue;
+    const auto near = static_cast<std::size_t>(nearest_traversable[cell]);
+    const auto along = [](std::size_t a, std::size_t b) {
+      return static_cast<double>(a) - static_cast<double>(b);
+    };
+    const double cells =
+        std::hypot(along(cell % size_x, near % size_x), along(cell / size_x, near / size_x));
+    const double jump_m = std::abs(before.values[cell] - before.values[near]);
+    if (cells < kReachCells && jump_m > kJumpM + kSteepest * cells * dilated.cell_m) {
+      dilated.values[cell] = before.values[near];
+    }
+  }
+  return dilated;
+}
+
 Result<void> check_buildable(const Grid& elevation, const TerrainSettings& settings) {
   WEX_EXPECTS(elevation.values.size() ==
               static_cast<std::size_t>(elevation.size_x) * elevation.size_y);
@@ -214,7 +238,8 @@ Result<TerrainMap> TerrainMap::build(Grid elevation, const TerrainSettings& sett
   layers->nearest_traversable =
       terrain_internal::transform_distance(mask, elevation.size_x, elevation.size_y).nearest;
 
-  layers->dilated_surface = BsplineSurface(filled_from_neighbours(layers->dilated));
+  layers->dilated_surface = BsplineSurface(
+      filled_from_neighbours(without_cliffs(layers->dilated, mask, layers->nearest_traversable)));
   layers->signed_distance_surface = BsplineSurface(layers->signed_distance);
   layers->elevation = std::move(elevation);
   return TerrainMap(std::move(layers));

@@ -82,7 +82,8 @@ class TerrainMap {
       const Eigen::Vector2d& p_world_xy) const noexcept;
 
   /// C2 cubic B-spline of the tyre-dilated height and of the signed distance, exact derivatives;
-  /// clamped to the map's edge, finite everywhere (unknown cells are filled from their neighbours).
+  /// clamped to the map's edge, finite everywhere (unknown cells are filled from their neighbours;
+  /// where traversable ground ends at a cliff the former carries it on for half a metre).
   [[nodiscard]] SurfaceSample dilated_surface(const Eigen::Vector2d& p_world_xy) const noexcept;
   [[nodiscard]] SurfaceSample signed_distance_surface(
       const Eigen::Vector2d& p_world_xy) const noexcept;

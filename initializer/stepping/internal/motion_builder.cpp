@@ -186,7 +186,7 @@ MotionBuilder::Done MotionBuilder::drive(const PreparedRun& run) {
 
 MotionBuilder::Done MotionBuilder::move_arm(const Footing& footing, const ArmPosture& to) {
   const auto path = mover_.path(footing, nodes_.back().q, arm_now(), to);
-  if (!path) return failure(path.error());
+  if (!path) return arm_failure(path.error());
   nodes_.back().stop = true;
   for (std::size_t i = 1; i < path->size(); ++i) {
     Eigen::VectorXd q = nodes_.back().q;
@@ -238,7 +238,7 @@ MotionBuilder::Done MotionBuilder::step_onto(const PreparedRun& run) {
   const Footing& on_wheels = *standing;
   if (run.bucket) {
     auto lowering = mover_.lowering(on_wheels, nodes_.back().q, bucket_posture(run, 0));
-    if (!lowering) return failure(lowering.error());
+    if (!lowering) return arm_failure(lowering.error());
     if (auto moved = move_arm(on_wheels, lowering->front()); !moved) return moved;
     const double turn_rad = arm_now().turn_rad - lowering->front().turn_rad;
     double height_m = bucket_height_m(on_wheels, lowering->front());
@@ -266,7 +266,7 @@ MotionBuilder::Done MotionBuilder::step_off(const PreparedRun& run, const ArmPos
   const Footing& on_wheels = *standing;
   if (run.bucket) {
     auto rising = mover_.lowering(on_wheels, nodes_.back().q, arm_now());
-    if (!rising) return failure(rising.error());
+    if (!rising) return arm_failure(rising.error());
     std::reverse(rising->begin(), rising->end());
     lift_contact(kArmIndex);
     for (std::size_t i = 1; i < rising->size(); ++i) {
@@ -296,7 +296,7 @@ Result<ArmPosture, MotionFailure> MotionBuilder::arm_after(const std::vector<Pre
   const auto standing = footing(next.base, 0, 0);
   if (!standing) return tl::unexpected<MotionFailure>(standing.error());
   const auto lowering = mover_.lowering(*standing, nodes_.back().q, bucket_posture(next, 0));
-  if (!lowering) return failure(lowering.error());
+  if (!lowering) return arm_failure(lowering.error());
   return lowering->front();
 }
 

@@ -88,6 +88,9 @@ class MotionBuilder {
   [[nodiscard]] tl::unexpected<MotionFailure> failure(std::string why) const {
     return tl::unexpected<MotionFailure>({state_, std::move(why)});
   }
+  [[nodiscard]] tl::unexpected<MotionFailure> arm_failure(std::string why) const {
+    return tl::unexpected<MotionFailure>({state_, std::move(why), true});
+  }
 
   const MotionParts& parts_;
   const CertifiedSequence& sequence_;

@@ -1,6 +1,7 @@
 // What MotionBuilder decides before it makes nodes: base motion, how high wheels are lifted, how
 // the arm is held.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -9,9 +10,9 @@
 namespace wex {
 namespace {
 
-constexpr double kTableErrorM = 1e-4;    // added to demands: tables err by less
-constexpr double kSwingReserveM = 0.01;  // of the tyres, for what is between the poses looked at
-constexpr double kComfortableReserveM = 0.05;  // where legs go so high
+constexpr double kTableErrorM = 1e-4;  // added to demands: tables err by less
+// Of the tyres, for what is between the poses looked at; the first that the legs reach.
+constexpr std::array<double, 4> kSwingReservesM = {0.05, 0.035, 0.02, 0.01};
 constexpr double kBeamClearanceM = 0.05, kStandingClawClearM = 0.02;
 constexpr double kLegSpacingM = 0.1;  // between the points of a leg held against the ground
 constexpr double kLiftStepRad = 0.05;
@@ -142,10 +143,10 @@ MotionBuilder::Done MotionBuilder::prepare_support(PreparedRun& run) {
     run.held = {{0, parts_.arm.transport()}};
     return {};
   }
-  Done lifts =
-      lift_wheels(run.base, parts_.placer, parts_.motion.swing_clearance_m + kComfortableReserveM);
-  if (!lifts) {
-    lifts = lift_wheels(run.base, parts_.placer, parts_.motion.swing_clearance_m + kSwingReserveM);
+  Done lifts;
+  for (const double reserve_m : kSwingReservesM) {
+    lifts = lift_wheels(run.base, parts_.placer, parts_.motion.swing_clearance_m + reserve_m);
+    if (lifts) break;
   }
   if (!lifts) return lifts;
   if (auto raised = raise_legs_clear(run.base); !raised) return raised;
