@@ -364,9 +364,6 @@ bool PlanSearch::keep(Plan plan, std::optional<CertifiedSequence> sequence) {
 }
 
 void PlanSearch::reject(Kind kind, const Pose2& where, const std::string& why) {
-  fprintf(stderr, "REJ %d %.2f (%.2f %.2f %.2f) %s\n", (int)kind, elapsed_s(),
-          where.x_m + terrain_.map_origin_m().x(), where.y_m + terrain_.map_origin_m().y(),
-          where.yaw_rad, why.c_str());
   census_.add({where, why, kind == kStepping});
   Tree& tree = trees_[kind];
   ++tree.num_rejections;
