@@ -55,10 +55,10 @@ class BadInput : public ::testing::Test {
   static std::string rows() { return "0 0 0 0\n0 0 0 0\n0 0 0 0\n0 0 0 0\n"; }
 
   void expect_refused(const std::vector<std::string>& arguments,
-                      const std::vector<std::string>& words) {
+                      const std::vector<std::string>& words, int exit_code = 2) {
     const std::vector<std::string> before = listing(folder_);
     const ProgramOutcome outcome = run_program(folder_, arguments);
-    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(outcome.exit_code, exit_code);
     EXPECT_EQ(outcome.out, "");
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
     EXPECT_THAT(outcome.err, ::testing::StartsWith("wex: "));
@@ -190,6 +190,34 @@ TEST_F(BadInput, NoStartAndGoal) {
 
 TEST_F(BadInput, GoalThatIsTheStart) {
   expect_option_refused("--goal=7.5,8,6.2832", {"start and goal are the same"});
+}
+
+TEST_F(BadInput, MapWithoutACell) {
+  write("empty.asc", "");
+  expect_refused({"plan", "empty.asc", "--out", "results"}, {"empty.asc"});
+  write_grid("none.asc", "ncols 0\nnrows 0\nxllcenter 0\nyllcenter 0\ncellsize 0.1\n", "");
+  expect_refused({"plan", "none.asc", "--out", "results"}, {"none.asc", "ncols"});
+}
+
+TEST_F(BadInput, MapSmallerThanTheMachine) {
+  write_grid("small.asc", header("0.5"), rows());
+  expect_refused({"plan", "small.asc", "--out", "results"},
+                 {"the start", "the machine would be off the map"});
+}
+
+TEST_F(BadInput, PlanFromAPlaceToItself) {
+  expect_refused({"plan", "ground.asc", "--out", "results", "--goal=7.5,8,0"},
+                 {"start and goal are the same"});
+}
+
+TEST_F(BadInput, GoalSurroundedByUnknownGround) {
+  // Good ground of 4 m around the goal, then nothing known.
+  write_ground("island.asc", [](double x, double y) {
+    const double r = std::hypot(x - 20.0, y - 8.0);
+    return r > 4.5 && r < 6.0 ? std::nan("") : 0.0;
+  });
+  expect_refused({"plan", "island.asc", "--out", "results", "--iterations", "80"},
+                 {"no plan from start to goal", "80 iterations", "unknown ground"}, 3);
 }
 
 TEST_F(BadInput, TaskFileThatIsNoTask) {
