@@ -8,6 +8,7 @@
 #include <ompl/geometric/planners/rrt/RRTstar.h>
 
 #include <memory>
+#include <type_traits>
 
 namespace wex {
 namespace {
@@ -83,8 +84,10 @@ template <typename Planner>
 AnytimePlanner set_up(const std::shared_ptr<Planner>& planner,
                       const ob::ProblemDefinitionPtr& problem) {
   planner->setProblemDefinition(problem);
-  // Needs the problem definition set.
-  planner->template setNearestNeighbors<ompl::NearestNeighborsLinear>();
+  // Needs the problem definition set. BIT* has a kind of its own, which OMPL does not let out.
+  if constexpr (!std::is_same_v<Planner, og::BITstar>) {
+    planner->template setNearestNeighbors<ompl::NearestNeighborsLinear>();
+  }
   planner->setup();
   return {planner, [planner] { return static_cast<int>(planner->numIterations()); },
           [planner] { return planner->bestCost().value(); }};
