@@ -13,7 +13,7 @@ using Admission = Certifier::Admission;
 
 /// Bumps, and a ditch across them that must be stepped over.
 double broken_ground(double x, double y) {
-  return std::abs(x + 0.2 * y - 1.0) < 0.9 ? -3.0 : 0.5 * bumps(x, y);
+  return std::abs(x + 0.2 * y - 1.0) < 0.9 ? -3.0 : 0.9 * bumps(x, y);
 }
 
 struct Query {
