@@ -94,7 +94,7 @@ TEST(MakePlan, OnFlatGroundThePlanIsAsShortAsAReedsSheppCurve) {
   const TerrainMap map = flat_map();
   for (const Task& task : {kAlongX, Task{{0.0, 0.0, 0.0}, {0.0, 0.0, 2.0}},
                            Task{{-5.0, -5.0, 3.0}, {4.0, 3.0, -3.0}}}) {
-    const auto plan = make_plan(map, test_machine(), task);
+    const auto plan = make_plan(map, test_machine(), task, with_iterations(100));
     ASSERT_TRUE(plan) << plan.error().message;
     const double shortest_m =
         path_length_m(reeds_shepp_path(task.start, task.goal, test_machine().min_turning_radius_m));

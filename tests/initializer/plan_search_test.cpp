@@ -127,12 +127,12 @@ TEST(PlanSearch, AMachineWithoutAnArmOnlyDrives) {
 }
 
 TEST(PlanSearch, APenaltyOnSteppingPrefersTheWayAround) {
-  // A gap with a strip 8 m wide beside the straight way.
+  // A gap that ends 8 m beside the straight way.
   const TerrainMap map = make_map(
-      36.0, 30.0, [](double x, double y) { return std::abs(x) < 0.6 && y < 4.0 ? -2.0 : 0.0; });
-  const Task task{{-8.0, 0.0, 0.0}, {8.0, 0.0, 0.0}};
+      36.0, 30.0, [](double x, double y) { return std::abs(x) < 0.6 && y < 0.0 ? -2.0 : 0.0; });
+  const Task task{{-8.0, -8.0, 0.0}, {8.0, -8.0, 0.0}};
   const auto lifts = [&](double penalty) {
-    PlanSettings settings = with_iterations(400);
+    PlanSettings settings = with_iterations(60);
     settings.stepping_penalty = penalty;
     const auto plan = make_plan(map, test_machine(), task, settings);
     EXPECT_TRUE(plan) << plan.error().message;

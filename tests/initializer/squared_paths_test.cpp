@@ -48,11 +48,15 @@ std::vector<DrivePath> paths_on(const TerrainMap& map, const Pose2& start, const
   return squared_paths(map, start, goal, settings_for(map), four_points(map), max_paths);
 }
 
-/// A gap 2 m wide through the map's middle, met squarely at a heading of `skew_rad`.
+/// A ditch whose sides no wheel may stand on, the edge of its level banks at +-half_width.
+double ditch(double across_m, double half_width_m) {
+  return std::min(0.0, 3.0 * (std::abs(across_m) - half_width_m));
+}
+
+/// A ditch 2 m wide through the map's middle, met squarely at a heading of `skew_rad`.
 TerrainMap gap_at(double skew_rad) {
   const double c = std::cos(skew_rad), s = std::sin(skew_rad);
-  return make_map(36.0, 24.0,
-                  [=](double x, double y) { return std::abs(c * x + s * y) < 1.0 ? -2.0 : 0.0; });
+  return make_map(36.0, 24.0, [=](double x, double y) { return ditch(c * x + s * y, 1.0); });
 }
 
 /// Ends meet ends, the first at the start, the last at the goal.
@@ -138,8 +142,7 @@ TEST(SquaredPaths, NoneFromAPlaceToItself) {
 }
 
 TEST(SquaredPaths, NoneOverWhatIsWiderThanTheWheelbase) {
-  const TerrainMap map =
-      make_map(36.0, 24.0, [](double x, double) { return std::abs(x) < 3.0 ? -2.0 : 0.0; });
+  const TerrainMap map = make_map(36.0, 24.0, [](double x, double) { return ditch(x, 3.0); });
   EXPECT_TRUE(paths_on(map, {-9.0, 0.0, 0.0}, {9.0, 0.0, 0.0}).empty());
 }
 
