@@ -75,8 +75,8 @@ TEST(PlanSearch, DoesNotLiftAWheelOnFlatGround) {
 TEST(PlanSearch, WithIterationsTheSameSeedGivesTheSameSteppingPlanBitForBit) {
   const TerrainMap map = gap_map(1.5);
   const Task hard{{-7.5, 2.0, 1.3}, {7.5, -2.0, -1.2}};
-  const auto first = make_plan(map, test_machine(), hard, with_iterations(80, 3));
-  const auto again = make_plan(map, test_machine(), hard, with_iterations(80, 3));
+  const auto first = make_plan(map, test_machine(), hard, with_iterations(40, 3));
+  const auto again = make_plan(map, test_machine(), hard, with_iterations(40, 3));
   ASSERT_TRUE(first) << first.error().message;
   ASSERT_TRUE(again);
   EXPECT_GT(wheel_lifts(*first), 0);

@@ -175,14 +175,23 @@ TEST(TerrainMap, ItsSplineIsFlatOnTopOfABlockAndAtItsFoot) {
         built(make_grid(120, 60, 0.1, [&](double x, double) { return x > 5.95 ? height_m : 0.0; }));
     EXPECT_TRUE(map.traversable_at({6.0, 3.0}));
     EXPECT_LT(worst_beside(map, height_m, 6.04, 8.0), 0.01) << height_m;
-    double foot_m = 3.0;  // first cell no tyre may stand on
-    while (map.traversable_at({foot_m, 3.0})) foot_m += 0.1;
-    EXPECT_NEAR(foot_m, 5.45, 0.06);
-    EXPECT_LT(worst_beside(map, 0.0, 3.0, foot_m - 0.15), 0.01) << height_m;
-    // What a spline through the riser would make of it.
-    const terrain_internal::BsplineSurface plain(map.dilated_height());
-    EXPECT_GT(std::abs(plain.sample({foot_m - 0.15, 3.03}).value), 0.01) << height_m;
+    double foot_m = 3.0;  // 0.15 m before ground no tyre may stand on
+    while (map.signed_distance_m({foot_m + 0.01, 3.0}) >= 0.15) foot_m += 0.01;
+    EXPECT_NEAR(foot_m, 5.25, 0.06);
+    EXPECT_LT(worst_beside(map, 0.0, 3.0, foot_m), 0.01) << height_m;
   }
+}
+
+TEST(TerrainMap, ASplineThroughACliffWouldSwingBesideIt) {
+  const TerrainMap map =
+      built(make_grid(120, 60, 0.1, [](double x, double) { return x > 5.95 ? 2.0 : 0.0; }));
+  const terrain_internal::BsplineSurface plain(map.dilated_height());
+  double worst_m = 0.0;
+  for (double x = 4.0; x < 5.2; x += 0.02) {
+    worst_m = std::max(worst_m, std::abs(plain.sample({x, 3.03}).value));
+  }
+  EXPECT_GT(worst_m, 0.02);
+  EXPECT_LT(worst_beside(map, 0.0, 4.0, 5.2), 0.005);
 }
 
 TEST(TerrainMap, ItsSplineKeepsClimbingOnSlopesAndFollowsBumps) {
