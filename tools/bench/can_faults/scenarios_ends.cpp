@@ -264,6 +264,7 @@ void soak(Scene& scene, bool full) {
   const bool enabled = rig.mode() == can::MachineMode::kEnabled;
   const long growth_kb =
       std::max(board.host_resident_kb - host_kb, board.machine_resident_kb - machine_kb);
+  const double late_ms = lateness_ms(board, begin_ns, now_ns());
   std::string bins;
   for (int i = 0; i < can::LatencyHistogram::kNumBins; ++i) {
     const bool last = i + 1 == can::LatencyHistogram::kNumBins;
@@ -280,12 +281,12 @@ void soak(Scene& scene, bool full) {
           "periods late by %.0f ms at most",
           bus.frames_sent(), bus.frames_received(), bus.frames_lost(), bus.receive_overflows, holds,
           100.0 * bus.bus_load, 100.0 * bus.max_bus_load, bins.c_str(),
-          bus.command_to_report.max_ms(), growth_kb, lateness_ms(board, begin_ns, now_ns())),
-      "0 lost, 0 overflows, 0 holds (unless a process was late by 30 ms), load <= 50 %, <= 60 %, "
-      "<= 200 kB",
+          bus.command_to_report.max_ms(), growth_kb, late_ms),
+      "0 lost, 0 overflows, 0 holds (unless a process was late by 30 ms), load <= 50 %, <= 60 % "
+      "(+ late), <= 200 kB",
       bus.frames_lost() == 0 && bus.receive_overflows == 0 &&
           unexcused_holds(board, begin_ns) == 0 && (enabled || holds > 0) && bus.bus_load <= 0.50 &&
-          bus.max_bus_load <= 0.60 && growth_kb <= 200);
+          bus.max_bus_load <= 0.60 * (1.0 + 1e-3 * late_ms) && growth_kb <= 200);
 }
 
 void jump_the_clock(Scene& scene, bool) {
