@@ -33,6 +33,13 @@ class ZoneControllerTest : public ::testing::Test {
   }
   const ZoneOutput& hold() { return controller_.update(nullptr, position_, rate_); }
 
+  /// Is the brake of `joint` closed after a period at this measured rate?
+  bool closes_at(int joint, double rate) {
+    ZoneController fresh = make();
+    rate_[joint] = rate;
+    return fresh.update(nullptr, position_, rate_).brake[joint];
+  }
+
   ZoneController controller_ = make();
   std::array<double, kMaxZoneJoints> position_{}, rate_{};
 };
@@ -49,6 +56,27 @@ TEST_F(ZoneControllerTest, NextToNothingKeepsTheSpoolClosed) {
   EXPECT_TRUE(controller_.neutral());
   EXPECT_NE(ask(kCylinder, 0.0011).spool[kCylinder], 0.0);
   EXPECT_FALSE(controller_.neutral());
+}
+
+TEST_F(ZoneControllerTest, TheSlowestRateOpensTheSpool) {
+  ZoneControllerSettings settings;
+  settings.rest_rate_fraction = 0.25;
+  ZoneController::Roles roles{};
+  roles.fill(SlotRole::kCylinder);
+  ZoneController::Limits limits{};
+  limits.fill({-1.0, 1.0, 0.5, 0.5});
+  controller_ = ZoneController(roles, limits, settings);
+  for (int joint = 0; joint < kMaxZoneJoints; ++joint) {
+    EXPECT_NE(ask(joint, 0.125).spool[joint], 0.0);
+    EXPECT_EQ(ask(joint, std::nextafter(0.125, 0.0)).spool[joint], 0.0);
+  }
+}
+
+TEST_F(ZoneControllerTest, PlacesThatTheZoneDoesNotHaveStayShut) {
+  const ZoneOutput& output = ask(3, 1.0);
+  EXPECT_EQ(output.spool[3], 0.0);
+  EXPECT_EQ(output.wheel_rate[3], 0.0);
+  EXPECT_FALSE(output.brake[3]);
 }
 
 TEST_F(ZoneControllerTest, HoldingRampsTheSpoolToNeutralWithin50Ms) {
@@ -78,6 +106,24 @@ TEST_F(ZoneControllerTest, TheSwingBrakeClosesAfterStandstill) {
   rate_[kSwing] = 0.02;
   EXPECT_TRUE(hold().brake[kSwing]) << "closed is closed";
   EXPECT_FALSE(ask(kSwing, 0.1).brake[kSwing]);
+}
+
+TEST_F(ZoneControllerTest, TheSwingBrakeStaysOpenWhileItsSpoolIs) {
+  ask(kSwing, 0.8);
+  for (int i = 0; i < 4; ++i) EXPECT_FALSE(hold().brake[kSwing]) << "it stands, but may yet swing";
+  EXPECT_TRUE(hold().brake[kSwing]);
+}
+
+TEST_F(ZoneControllerTest, BrakesCloseBelowTheirRates) {
+  EXPECT_FALSE(closes_at(kSwing, 0.01));
+  EXPECT_TRUE(closes_at(kSwing, std::nextafter(0.01, 0.0)));
+  EXPECT_FALSE(closes_at(kWheel, -0.06));
+  EXPECT_TRUE(closes_at(kWheel, std::nextafter(-0.06, 0.0)));
+}
+
+TEST_F(ZoneControllerTest, AWheelIsLeftToItsBrakeBelowAMillirad) {
+  EXPECT_FALSE(ask(kWheel, 1e-3).brake[kWheel]);
+  EXPECT_TRUE(ask(kWheel, std::nextafter(1e-3, 0.0)).brake[kWheel]);
 }
 
 TEST_F(ZoneControllerTest, AHoldingWheelRampsDownThenLatches) {
@@ -119,8 +165,25 @@ TEST_F(ZoneControllerTest, AllBrakesAreClosedWhenSwingAndWheelsAre) {
   hold();
   hold();
   EXPECT_TRUE(controller_.brakes_closed());
-  ask(kWheel, 0.5);
-  EXPECT_FALSE(controller_.brakes_closed());
+  for (const int joint : {kSwing, kWheel}) {
+    ask(joint, 0.5);
+    EXPECT_FALSE(controller_.brakes_closed()) << joint;
+    for (int i = 0; i < 10; ++i) hold();
+    EXPECT_TRUE(controller_.brakes_closed());
+  }
+}
+
+TEST_F(ZoneControllerTest, TheBrakeOfAnyPlaceCounts) {
+  for (int joint = 0; joint < kMaxZoneJoints; ++joint) {
+    ZoneController::Roles roles{};
+    roles[joint] = SlotRole::kWheel;
+    ZoneController::Limits limits{};
+    limits[joint] = {-kInfinity, kInfinity, 2.5, 0.8};
+    controller_ = ZoneController(roles, limits);
+    EXPECT_FALSE(controller_.brakes_closed()) << joint;
+    hold();
+    EXPECT_TRUE(controller_.brakes_closed()) << joint;
+  }
 }
 
 TEST_F(ZoneControllerTest, WheelsNeverExceedTheirLimit) {
