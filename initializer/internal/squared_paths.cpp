@@ -12,7 +12,7 @@ namespace {
 constexpr double kRaySpacingM = 1.0;
 constexpr int kRaysPerSide = 5;
 constexpr double kRayStepM = 0.2;
-constexpr double kGradientReachM = 0.8;  // over which an edge's direction is averaged
+constexpr double kGradientReachM = 1.6;  // over which the steps of an edge by cells average out
 constexpr double kReachM = 10.0;         // of a line before its edge
 constexpr double kLineStepM = 0.2;
 // Before the edge, from where the wheels must be lifted: where the line may be joined.
@@ -39,7 +39,7 @@ std::optional<double> yaw_across(const TerrainMap& terrain, const Eigen::Vector2
                                  const Eigen::Vector2d& onward) {
   // The least squares gradient of the signed distance on a disc.
   Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
-  constexpr int kSteps = 4;
+  constexpr int kSteps = 8;
   for (int i = -kSteps; i <= kSteps; ++i) {
     for (int j = -kSteps; j <= kSteps; ++j) {
       const Eigen::Vector2d offset = kGradientReachM / kSteps * Eigen::Vector2d(i, j);

@@ -1,5 +1,6 @@
 #include "initializer/stepping/motion_nodes.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -13,6 +14,7 @@ namespace {
 
 constexpr double kRounding = 1e-6;
 constexpr double kStandstillM = 1e-9;
+constexpr double kMaxSlipM_s = 0.25;  // of a standing tyre along its axle
 constexpr double kLegSpacingM = 0.1;  // between the points of a leg held against the ground
 
 double travel_m(const Eigen::Vector3d& moved, const Eigen::Vector3d& axle_world, bool grounded) {
@@ -61,6 +63,10 @@ void turn_wheels(const MachineModel& machine, std::vector<MotionNode>& nodes) {
           machine.tree.position(after, leg.carrier_body, leg.p_carrier_wheel) -
           machine.tree.position(before, leg.carrier_body, leg.p_carrier_wheel);
       double turn_rad = travel_m(moved, axle_world, grounded) / leg.radius_m;
+      if (grounded) {
+        double& least_s = nodes[i - 1].min_duration_s;
+        least_s = std::max(least_s, std::abs(moved.dot(axle_world)) / kMaxSlipM_s);
+      }
       if (grounded) {
         const auto carrier = static_cast<std::size_t>(leg.carrier_body);
         const Eigen::AngleAxisd carried(before.T_world_body[carrier].linear().transpose() *

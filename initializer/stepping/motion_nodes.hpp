@@ -12,7 +12,8 @@
 namespace wex {
 
 /// Fills in wheel angles: wheels on the ground roll the way their centres go, less the turn of what
-/// carries the axle; lifted ones turn with ground speed while the base drives.
+/// carries the axle; lifted ones turn with ground speed while the base drives. Nodes between which
+/// a standing wheel slips sideways are given the time for it.
 void turn_wheels(const MachineModel& machine, std::vector<MotionNode>& nodes);
 
 /// The first node that breaks a limit of a joint or of stability on its scheduled contacts, or has

@@ -94,7 +94,7 @@ TEST(MakePlan, OnFlatGroundThePlanIsAsShortAsAReedsSheppCurve) {
   const TerrainMap map = flat_map();
   for (const Task& task : {kAlongX, Task{{0.0, 0.0, 0.0}, {0.0, 0.0, 2.0}},
                            Task{{-5.0, -5.0, 3.0}, {4.0, 3.0, -3.0}}}) {
-    const auto plan = make_plan(map, test_machine(), task);
+    const auto plan = make_plan(map, test_machine(), task, with_iterations(100));
     ASSERT_TRUE(plan) << plan.error().message;
     const double shortest_m =
         path_length_m(reeds_shepp_path(task.start, task.goal, test_machine().min_turning_radius_m));
@@ -157,10 +157,12 @@ TEST(MakePlan, WithIterationsTheSameSeedGivesTheSamePlanBitForBit) {
   EXPECT_NE(first->cost, other->cost) << "the seed made no difference";
 }
 
-TEST(MakePlan, AGapOverTheWholeWidthIsNoPlanAndSaysWhatBlockedIt) {
+TEST(MakePlan, WithoutSteppingAGapOverTheWholeWidthIsNoPlanAndSaysWhatBlockedIt) {
   const TerrainMap map =
       make_map(40.0, 30.0, [](double x, double) { return std::abs(x) < 1.0 ? -2.0 : 0.0; });
-  const auto plan = make_plan(map, test_machine(), kAlongX, with_iterations(200));
+  PlanSettings settings = with_iterations(200);
+  settings.mode = PlanMode::kDriveOnly;
+  const auto plan = make_plan(map, test_machine(), kAlongX, settings);
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().code, ErrorCode::kNoPlan);
   EXPECT_THAT(plan.error().message, HasSubstr("200 iterations"));

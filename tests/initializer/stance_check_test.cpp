@@ -21,6 +21,8 @@ BaseCoordinates base_at(double x, double z, double pitch_rad = 0.0, double yaw_r
   return base;
 }
 
+constexpr std::uint8_t kFrontWheels = 0b0011, kRearWheels = 0b1100, kAllWheels = 0b1111;
+
 struct World {
   explicit World(const HeightFunction& height, double size_x_m = 24.0, double size_y_m = 14.0)
       : map(make_map(size_x_m, size_y_m, height)), ground(map), check(ground, tables()) {}
@@ -117,6 +119,27 @@ TEST(StanceGround, OffTheMapEverythingIsRefused) {
   EXPECT_LT(world.ground.clear_m(-40.0, 0.0), 0.0);
 }
 
+TEST(StanceGround, AtACliffTheTopSideCountsForTyresThatMustStayClear) {
+  // 1 m up from the cell at x = 3; a tyre touches that from 0.6 m before.
+  const World world([](double x, double) { return x > 2.95 ? 1.0 : 0.0; });
+  const StanceGround& ground = world.ground;
+  EXPECT_NEAR(ground.dilated_m(2.35, 0.0), 0.5 * (0.0 + 0.4), 1e-3);
+  EXPECT_NEAR(ground.dilated_top_side_m(2.35, 0.0), 0.4, 1e-3) << "0.4 m between two cells";
+  EXPECT_NEAR(ground.dilated_top_side_m(2.31, 0.0), 0.4, 1e-3);
+  EXPECT_NEAR(ground.dilated_top_side_m(2.25, 0.0), 0.0, 1e-3) << "before it";
+  EXPECT_EQ(ground.dilated_top_side_m(2.75, 0.0), ground.dilated_m(2.75, 0.0))
+      << "0.1 m from cell to cell is no cliff";
+}
+
+TEST(StanceGround, OnSlopesAndBumpsTheTopSideIsTheGround) {
+  const World world([](double x, double y) { return 0.5 * x + 0.5 * bumps(x, y); });
+  for (double x = -4.0; x < 4.0; x += 0.23) {
+    for (double y = -3.0; y < 3.0; y += 0.31) {
+      EXPECT_EQ(world.ground.dilated_top_side_m(x, y), world.ground.dilated_m(x, y));
+    }
+  }
+}
+
 TEST(StanceCheck, StandsOnFlatGroundAtTheDefaultHeight) {
   const World world(flat);
   const Stance stance = world.stance(base_at(0.0, 0.95));
@@ -150,6 +173,52 @@ TEST(StanceCheck, WheelsOverAPitCanOnlyBeLifted) {
   EXPECT_FALSE(stance.allows(0));
 }
 
+TEST(StanceCheck, ClawsAreKeptOffAWallBehind) {
+  // Claws reach from behind the hind wheels, at x = -2.3, to -3.2, a metre above the ground.
+  const auto stance_before = [](double wall_x_m, double height_m) {
+    const World world([&](double x, double) { return x < wall_x_m + 0.05 ? height_m : 0.0; });
+    return world.stance(base_at(0.0, 0.95));
+  };
+  ASSERT_TRUE(tables().legs[2][kSteeredStraight].has_claw);
+  const Stance near = stance_before(-3.2, 1.5);
+  EXPECT_EQ(near.grounded, kFrontWheels);
+  EXPECT_EQ(near.fault[2], LegFault::kBeam);
+  EXPECT_EQ(near.fault[3], LegFault::kBeam);
+  EXPECT_EQ(stance_before(-3.6, 1.5).grounded, kAllWheels);
+  EXPECT_EQ(stance_before(-3.2, 0.4).grounded, kAllWheels) << "they stand out over it";
+}
+
+TEST(StanceCheck, AClawThatWouldMeetAWallOnItsWayUpMayNotBeLifted) {
+  // The base is high: claws hang down, and stand out 0.2 m farther while they pass the level.
+  const auto stance_before = [](double wall_x_m) {
+    const World world([&](double x, double) { return x < wall_x_m + 0.05 ? 1.6 : 0.0; });
+    return world.stance(base_at(0.0, 1.55));
+  };
+  const Stance near = stance_before(-3.3), far = stance_before(-3.7);
+  for (const Stance& stance : {near, far}) EXPECT_EQ(stance.grounded & kRearWheels, kRearWheels);
+  EXPECT_EQ(near.swing_clear & kRearWheels, kRearWheels) << "up there it is clear again";
+  EXPECT_EQ(near.sweep_clear & kRearWheels, 0);
+  EXPECT_FALSE(near.may_lift(kRearWheels));
+  EXPECT_EQ(far.sweep_clear & kRearWheels, kRearWheels);
+}
+
+TEST(StanceCheck, AWheelThatWouldTouchABlockBesideItsFootholdMayNotBeLifted) {
+  // The base is high: front wheels stand at x = 2.2 and pass 2.54 on their way up.
+  const auto stance_before = [](double height_m) {
+    const World world([&](double x, double) { return x > 3.05 ? height_m : 0.0; });
+    return world.stance(base_at(0.0, 1.33));
+  };
+  const Stance high = stance_before(1.3), low = stance_before(0.5);
+  for (const Stance& stance : {high, low}) {
+    EXPECT_EQ(stance.grounded, kAllWheels);
+    EXPECT_EQ(stance.swing_clear & kFrontWheels, kFrontWheels);
+    EXPECT_TRUE(stance.allows(kFrontWheels));
+  }
+  EXPECT_EQ(high.sweep_clear & kFrontWheels, 0);
+  EXPECT_FALSE(high.may_lift(kFrontWheels));
+  EXPECT_TRUE(low.may_lift(kFrontWheels));
+}
+
 TEST(StanceCheck, StandingWheelsAreDiscsOnSlopedGround) {
   const double gradient = std::tan(0.2);
   const World world([&](double, double y) { return gradient * y; });
@@ -178,6 +247,7 @@ TEST(StanceCheck, MirroredTerrainGivesMirroredStances) {
     EXPECT_EQ(a.belly_clear, b.belly_clear);
     EXPECT_EQ(a.grounded, swapped(b.grounded)) << "pose " << k;
     EXPECT_EQ(a.swing_clear, swapped(b.swing_clear)) << "pose " << k;
+    EXPECT_EQ(a.sweep_clear, swapped(b.sweep_clear)) << "pose " << k;
     num_allowed += a.allows(0) ? 1 : 0;
   }
   EXPECT_GT(num_allowed, 20);
@@ -193,6 +263,7 @@ TEST(StanceCheck, MoreClearanceNeverAllowsMore) {
     EXPECT_LE(strict.belly_clear, plain.belly_clear);
     EXPECT_EQ(strict.grounded & ~plain.grounded, 0);
     EXPECT_EQ(strict.swing_clear & ~plain.swing_clear, 0);
+    EXPECT_EQ(strict.sweep_clear & ~plain.sweep_clear, 0);
   }
 }
 
@@ -205,6 +276,7 @@ TEST(StanceCheck, ShiftingMapAndPoseTogetherChangesNothing) {
     const Stance b = there.stance(base_at(x + 3.0, 11.2, 0.0, 0.02 * k));
     EXPECT_EQ(a.grounded, b.grounded);
     EXPECT_EQ(a.swing_clear, b.swing_clear);
+    EXPECT_EQ(a.sweep_clear, b.sweep_clear);
     EXPECT_EQ(a.belly_clear, b.belly_clear);
   }
 }

@@ -94,5 +94,81 @@ TEST_F(VerifyPlan, SeesValuesThatAreNotNumbers) {
   EXPECT_THAT(verdict().violation, HasSubstr("not finite"));
 }
 
+/// Over a gap on the bucket; the nodes in question are found by their contacts.
+class VerifySteppingPlan : public testing::Test {
+ protected:
+  static constexpr std::size_t kBucket = 4;
+
+  static void SetUpTestSuite() {
+    PlanSettings settings;
+    settings.iterations = 40;
+    auto made = make_plan(map(), test_machine(), {{-7.0, 0.0, 0.0}, {7.0, 0.0, 0.0}}, settings);
+    ASSERT_TRUE(made) << made.error().message;
+    made_ = *std::move(made);
+  }
+  static const TerrainMap& map() {
+    static const TerrainMap made =
+        make_map(30.0, 12.0, [](double x, double) { return std::abs(x) < 0.75 ? -2.0 : 0.0; });
+    return made;
+  }
+  [[nodiscard]] PlanVerdict verdict() const { return verify_plan(map(), test_machine(), plan_); }
+  /// The first node at which a limb has just changed its contact to `contact`.
+  [[nodiscard]] std::size_t change(std::size_t limb, bool contact) const {
+    std::size_t i = 1;
+    while (plan_.nodes[i - 1].contacts[limb] == contact || plan_.nodes[i].contacts[limb] != contact)
+      ++i;
+    return i;
+  }
+
+  static Plan made_;
+  Plan plan_ = made_;
+};
+Plan VerifySteppingPlan::made_;
+
+TEST_F(VerifySteppingPlan, AcceptsWhatThePlannerReturns) {
+  EXPECT_TRUE(verdict().ok) << verdict().violation;
+}
+
+TEST_F(VerifySteppingPlan, SeesALiftedWheelInTheGround) {
+  const std::size_t lift = change(0, false);
+  plan_.nodes[lift].q[test_machine().legs[0].hfe] -= 0.005;  // 6 mm: what the ball model allows
+  EXPECT_THAT(verdict().violation, testing::Not(HasSubstr("in the ground")));
+  plan_.nodes[lift].q[test_machine().legs[0].hfe] -= 0.05;
+  EXPECT_THAT(verdict().violation, HasSubstr("lifted wheel LF in the ground"));
+  EXPECT_EQ(verdict().node, lift);
+}
+
+TEST_F(VerifySteppingPlan, SeesAStandingWheelOverTheGap) {
+  const std::size_t lift = change(0, false), touch = change(0, true);
+  plan_.nodes[(lift + touch) / 2].contacts[0] = true;
+  EXPECT_THAT(verdict().violation, HasSubstr("wheel LF on untraversable ground"));
+}
+
+TEST_F(VerifySteppingPlan, SeesTheStandingBucketMove) {
+  const std::size_t touch = change(kBucket, true), lift = change(kBucket, false);
+  const std::size_t node = (touch + lift) / 2;
+  plan_.nodes[node].q[test_machine().arm->coordinates.front()] += 0.01;
+  EXPECT_THAT(verdict().violation, HasSubstr("the standing bucket moves"));
+  EXPECT_EQ(verdict().node, node);
+}
+
+TEST_F(VerifySteppingPlan, SeesTheStandingBucketOffTheGround) {
+  const std::size_t touch = change(kBucket, true);
+  plan_.nodes[touch].q[test_machine().arm->coordinates[1]] -= 0.02;
+  EXPECT_THAT(verdict().violation, HasSubstr("bucket off the ground"));
+}
+
+TEST_F(VerifySteppingPlan, SeesTwoContactsThatChangeAtOnce) {
+  const std::size_t lift = change(0, false);
+  plan_.nodes[lift].contacts[1] = false;
+  EXPECT_THAT(verdict().violation, HasSubstr("two contacts change at once"));
+}
+
+TEST_F(VerifySteppingPlan, SeesTooFewContacts) {
+  const std::size_t lift = change(0, false);
+  for (const std::size_t limb : {std::size_t{1}, kBucket}) plan_.nodes[lift].contacts[limb] = false;
+  EXPECT_THAT(verdict().violation, HasSubstr("fewer than three contacts"));
+}
+
 }  // namespace
 }  // namespace wex

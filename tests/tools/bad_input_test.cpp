@@ -192,6 +192,39 @@ TEST_F(BadInput, GoalThatIsTheStart) {
   expect_option_refused("--goal=7.5,8,6.2832", {"start and goal are the same"});
 }
 
+TEST_F(BadInput, MapWithoutACell) {
+  write("empty.asc", "");
+  expect_refused({"plan", "empty.asc", "--out", "results"}, {"empty.asc"});
+  write_grid("none.asc", "ncols 0\nnrows 0\nxllcenter 0\nyllcenter 0\ncellsize 0.1\n", "");
+  expect_refused({"plan", "none.asc", "--out", "results"}, {"none.asc", "ncols"});
+}
+
+TEST_F(BadInput, MapSmallerThanTheMachine) {
+  write_grid("small.asc", header(), rows());
+  expect_refused({"plan", "small.asc", "--out", "results"},
+                 {"the start (x 1.00, y 1.00", "wheel LF would be off the map"});
+}
+
+TEST_F(BadInput, PlanFromAPlaceToItself) {
+  expect_refused({"plan", "ground.asc", "--out", "results", "--goal=7.5,8,0"},
+                 {"start and goal are the same"});
+}
+
+TEST_F(BadInput, GoalSurroundedByUnknownGround) {
+  // Good ground of 4 m around the goal, then nothing known.
+  write_ground("island.asc", [](double x, double y) {
+    const double r = std::hypot(x - 20.0, y - 8.0);
+    return r > 4.5 && r < 6.0 ? std::nan("") : 0.0;
+  });
+  const ProgramOutcome outcome =
+      run_program(folder_, {"plan", "island.asc", "--out", "results", "--iterations", "80"});
+  EXPECT_EQ(outcome.exit_code, 3);
+  for (const char* words : {"wex: no plan from start to goal", "80 iterations", "unknown ground"}) {
+    EXPECT_THAT(outcome.err, HasSubstr(words));
+  }
+  EXPECT_EQ(outcome.err.back(), '\n');
+}
+
 TEST_F(BadInput, TaskFileThatIsNoTask) {
   write("ground.json", R"({"start": [7.5, 8]})");
   expect_map_refused("ground.asc", {"ground.json"});

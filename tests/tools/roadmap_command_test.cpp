@@ -60,6 +60,23 @@ TEST_F(RoadmapCommand, SaysWhyAFileWasRefused) {
   EXPECT_THAT(text_.str(), Not(HasSubstr("damaged")));
 }
 
+TEST_F(RoadmapCommand, RefusesTheRoadmapOfAnotherMachineAndMakesItsOwn) {
+  ASSERT_TRUE(run());
+  const fs::path own =
+      roadmap_file(load_machine().value(), options_.settings, options_.cache).value();
+  options_.machine = WEX_TEST_DATA_DIR "/small_walker";
+  ASSERT_TRUE(run());
+  const fs::path other =
+      roadmap_file(load_machine(options_.machine).value(), options_.settings, options_.cache)
+          .value();
+  fs::copy_file(other, own, fs::copy_options::overwrite_existing);
+  options_.machine = "m545";
+  ASSERT_TRUE(run());
+  EXPECT_THAT(text_.str(), HasSubstr("was made for another machine"));
+  ASSERT_TRUE(run());
+  EXPECT_THAT(text_.str(), Not(HasSubstr("another machine")));
+}
+
 TEST_F(RoadmapCommand, RefusesFoldersThatCannotBeWrittenAndUnknownMachines) {
   std::ofstream(folder_ / "a_file") << "in the way";
   options_.cache = folder_ / "a_file";

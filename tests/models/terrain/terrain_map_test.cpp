@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "models/terrain/internal/bspline_surface.hpp"
 #include "tests/models/terrain/terrain_fixtures.hpp"
 
 namespace wex {
@@ -143,6 +145,74 @@ TEST(TerrainMap, FillsUnknownCellsOfTheSplinesSoThatTheyAreFinite) {
       EXPECT_NEAR(map.dilated_surface({x, y}).value, 7.0, 1e-5);
       EXPECT_TRUE(std::isfinite(map.signed_distance_surface({x, y}).value));
     }
+  }
+}
+
+/// How far the spline is off level ground between two places along x.
+double worst_beside(const TerrainMap& map, double ground_m, double from_x_m, double to_x_m) {
+  double worst_m = 0.0;
+  for (double x = from_x_m; x < to_x_m; x += 0.02) {
+    worst_m = std::max(worst_m, std::abs(map.dilated_surface({x, 3.03}).value - ground_m));
+  }
+  return worst_m;
+}
+
+TEST(TerrainMap, ItsSplineIsFlatBesideTheRimOfAPit) {
+  for (const double depth_m : {0.5, 1.0, 2.0, 4.0}) {
+    // Traversable up to x = 4.9, and again from 7.1.
+    const TerrainMap map = built(make_grid(
+        120, 60, 0.1, [&](double x, double) { return x > 4.95 && x < 7.05 ? -depth_m : 0.0; }));
+    EXPECT_LT(worst_beside(map, 0.0, 3.5, 4.86), 0.01) << depth_m;
+    EXPECT_LT(worst_beside(map, 0.0, 7.14, 8.5), 0.01) << depth_m;
+    EXPECT_LT(std::abs(map.dilated_surface({4.85, 3.0}).gradient.x()), 0.1) << depth_m;
+  }
+}
+
+TEST(TerrainMap, ItsSplineIsFlatOnTopOfABlockAndAtItsFoot) {
+  for (const double height_m : {0.5, 1.0, 2.0}) {
+    // The tyre touches the riser from 0.6 m before it.
+    const TerrainMap map =
+        built(make_grid(120, 60, 0.1, [&](double x, double) { return x > 5.95 ? height_m : 0.0; }));
+    EXPECT_TRUE(map.traversable_at({6.0, 3.0}));
+    EXPECT_LT(worst_beside(map, height_m, 6.04, 8.0), 0.01) << height_m;
+    double foot_m = 3.0;  // 0.15 m before ground no tyre may stand on
+    while (map.signed_distance_m({foot_m + 0.01, 3.0}) >= 0.15) foot_m += 0.01;
+    EXPECT_NEAR(foot_m, 5.25, 0.06);
+    EXPECT_LT(worst_beside(map, 0.0, 3.0, foot_m), 0.01) << height_m;
+  }
+}
+
+TEST(TerrainMap, ASplineThroughACliffWouldSwingBesideIt) {
+  const TerrainMap map =
+      built(make_grid(120, 60, 0.1, [](double x, double) { return x > 5.95 ? 2.0 : 0.0; }));
+  const terrain_internal::BsplineSurface plain(map.dilated_height());
+  double worst_m = 0.0;
+  for (double x = 4.0; x < 5.2; x += 0.02) {
+    worst_m = std::max(worst_m, std::abs(plain.sample({x, 3.03}).value));
+  }
+  EXPECT_GT(worst_m, 0.02);
+  EXPECT_LT(worst_beside(map, 0.0, 4.0, 5.2), 0.005);
+}
+
+TEST(TerrainMap, ItsSplineKeepsClimbingOnSlopesAndFollowsBumps) {
+  const auto hills = [](double x, double y) { return 0.3 * x + 0.4 * std::sin(0.8 * x + 0.5 * y); };
+  const TerrainMap map = built(make_grid(120, 60, 0.1, hills));
+  const terrain_internal::BsplineSurface plain(map.dilated_height());
+  for (double x = 0.65; x < 11.0; x += 0.13) {
+    for (double y = 0.65; y < 5.0; y += 0.17) {
+      EXPECT_EQ(map.dilated_surface({x, y}).value, plain.sample({x, y}).value) << x << " " << y;
+    }
+  }
+}
+
+TEST(TerrainMap, ItsSplineFollowsASlopeThatIsTooSteepToStandOn) {
+  // 35 degrees from x = 4 to 6, without a jump: nothing is carried on over it.
+  const auto bank = [](double x, double) { return 0.7 * std::clamp(x - 4.0, 0.0, 2.0); };
+  const TerrainMap map = built(make_grid(120, 60, 0.1, bank));
+  EXPECT_FALSE(map.traversable_at({5.0, 3.0}));
+  const terrain_internal::BsplineSurface plain(map.dilated_height());
+  for (double x = 1.0; x < 11.0; x += 0.07) {
+    EXPECT_EQ(map.dilated_surface({x, 3.0}).value, plain.sample({x, 3.0}).value) << x;
   }
 }
 
