@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "initializer/explained_plan.hpp"
 #include "initializer/paper/paper_search.hpp"
 #include "initializer/plan_search.hpp"
 #include "initializer/pose_check.hpp"
@@ -75,6 +76,14 @@ Result<StandingPose> standing_at(const PoseCheck& check, const TerrainMap& terra
 Result<Plan> make_plan(const TerrainMap& terrain, const MachineModel& machine, const Task& task,
                        const PlanSettings& settings,
                        const std::function<void(const PlanProgress&)>& observer) {
+  SearchCensus ignored;
+  return make_plan(terrain, machine, task, settings, observer, ignored);
+}
+
+Result<Plan> make_plan(const TerrainMap& terrain, const MachineModel& machine, const Task& task,
+                       const PlanSettings& settings,
+                       const std::function<void(const PlanProgress&)>& observer,
+                       SearchCensus& turned_down) {
   const double begin_s = thread_cpu_time_s();
   if (std::string complaint = settings_complaint(settings); !complaint.empty()) {
     return fail(ErrorCode::kBadInput, std::move(complaint));
@@ -89,7 +98,10 @@ Result<Plan> make_plan(const TerrainMap& terrain, const MachineModel& machine, c
   if (settings.mode == PlanMode::kPaper) {
     return make_paper_plan(terrain, machine, task, settings, observer, begin_s);
   }
-  return PlanSearch(terrain, machine, task, settings, observer, *check, start->base, begin_s).run();
+  PlanSearch search(terrain, machine, task, settings, observer, *check, start->base, begin_s);
+  Result<Plan> plan = search.run();
+  turned_down = search.census();
+  return plan;
 }
 
 Result<Eigen::VectorXd> standing_posture(const TerrainMap& terrain, const MachineModel& machine,

@@ -25,6 +25,8 @@ constexpr double kBlockRadiusM = 0.5;      // around a pose where a path failed
 constexpr double kBlockYawRad = 0.1;       // 6 degrees
 constexpr std::uint64_t kSeedStride = 0x9E3779B97F4A7C15ULL;  // independent streams per tree
 
+constexpr double kNeedlessLiftM = 0.02;  // least cost of a change of support: none is idle
+
 constexpr int kSliceIterations = 40;     // of one tree before the other kind has its turn
 constexpr int kAlignedRejections = 3;    // then headings are free
 constexpr int kTreeRejections = 6;       // then the certified tree grows beside the others
@@ -165,8 +167,10 @@ bool PlanSearch::may_step() const {
 
 Result<void> PlanSearch::build_certifier() {
   CertificateSettings certificate;
-  certificate.lift_cost_m *= settings_.stepping_penalty;
-  certificate.bucket_cost_m *= settings_.stepping_penalty;
+  certificate.lift_cost_m =
+      std::max(settings_.stepping_penalty * certificate.lift_cost_m, kNeedlessLiftM);
+  certificate.bucket_cost_m =
+      std::max(settings_.stepping_penalty * certificate.bucket_cost_m, kNeedlessLiftM);
   certificate.stepping_share *= settings_.stepping_penalty;
   auto built = Certifier::build(terrain_, machine_, settings_, certificate);
   if (!built) return tl::unexpected<Error>(built.error());

@@ -4,6 +4,7 @@
 #include <ostream>
 
 #include "tools/bench/algorithm2_bench.hpp"
+#include "tools/bench/bridge_bench.hpp"
 #include "tools/bench/can_bench.hpp"
 #include "tools/bench/drive_bench.hpp"
 #include "tools/bench/initializer_bench.hpp"
@@ -18,6 +19,7 @@ struct BenchOptions {
   InitializerBenchOptions initializer;
   RoadmapBenchOptions roadmap;
   Algorithm2BenchOptions algorithm2;
+  BridgeBenchOptions bridge;
 };
 
 /// Adds `bench` and its subcommands.
