@@ -11,6 +11,7 @@
 #include "tools/bench/initializer_bench.hpp"
 #include "tools/bench/kinematics_bench.hpp"
 #include "tools/bench/mpc_bench.hpp"
+#include "tools/bench/replan_bench.hpp"
 #include "tools/bench/roadmap_bench.hpp"
 #include "tools/bench/terrain_bench.hpp"
 #include "tools/check/check_command.hpp"
@@ -52,6 +53,7 @@ struct Options {
   check::CheckOptions check;
   RoadmapOptions roadmap;
   RoadmapBenchOptions roadmap_bench;
+  ReplanBenchOptions replan_bench;
   Algorithm2BenchOptions algorithm2_bench;
 };
 
@@ -427,6 +429,19 @@ void add_bench(CLI::App& app, Options& options) {
       ->check(CLI::Range(1, 1000))
       ->type_name("N")
       ->capture_default_str();
+  CLI::App& replanning = *command.add_subcommand(
+      "replan", "Planning again after 10 m2 of ground changed, beside planning from scratch");
+  replanning.add_option("--seeds", options.replan_bench.seeds, "Seeds per terrain")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  replanning.add_flag("--verbose", options.replan_bench.verbose, "A line for every change");
+  replanning
+      .add_option("--time-budget", options.replan_bench.plan.time_budget_s,
+                  "Seconds of computing for each plan before the change")
+      ->check(CLI::Range(0.01, 3600.0))
+      ->type_name("S")
+      ->capture_default_str();
   CLI::App& roadmaps =
       *command.add_subcommand("roadmap", "Building and loading of limb roadmaps, arm motions");
   roadmaps.add_option("--repeats", options.roadmap_bench.repeats, "Repeats of each")
@@ -534,6 +549,10 @@ int bench_command(const CLI::App& command, const Options& options, std::ostream&
   if (name == "initializer") return initializer_bench_command(options.initializer_bench, out, err);
   if (name == "algorithm2") {
     const Result<void> done = bench_algorithm2(options.algorithm2_bench, out);
+    return done ? 0 : refuse(err, done.error());
+  }
+  if (name == "replan") {
+    const Result<void> done = bench_replan(options.replan_bench, out);
     return done ? 0 : refuse(err, done.error());
   }
   if (name == "roadmap") {
