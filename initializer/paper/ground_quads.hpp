@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <vector>
 
 #include "models/terrain/terrain_map.hpp"
@@ -26,21 +25,44 @@ class GroundQuads {
   }
   [[nodiscard]] double cells_per_m() const noexcept { return per_m_; }
 
-  [[nodiscard]] float at(float u, float v) const noexcept {
-    const float cu = std::clamp(u, 0.0F, max_u_), cv = std::clamp(v, 0.0F, max_v_);
-    const int i = static_cast<int>(cu), j = static_cast<int>(cv);
-    const float* q = data() + 4 * (j * stride_ + i);
-    const float s = cu - static_cast<float>(i), t = cv - static_cast<float>(j);
-    const float low = q[0] + s * (q[1] - q[0]), high = q[2] + s * (q[3] - q[2]);
-    return low + t * (high - low);
+  /// What a query needs, in registers: loops over it become vectors.
+  struct View {
+    const float* values;
+    int stride;
+    float max_u, max_v;
+
+    [[nodiscard]] float at(float u, float v) const noexcept {
+      const float cu = within(u, max_u), cv = within(v, max_v);
+      const int i = static_cast<int>(cu), j = static_cast<int>(cv);
+      const int first = 4 * (j * stride + i);
+      const float s = cu - static_cast<float>(i), t = cv - static_cast<float>(j);
+      const float a = values[first], b = values[first + 1], c = values[first + 2],
+                  d = values[first + 3];
+      const float low = a + s * (b - a), high = c + s * (d - c);
+      return low + t * (high - low);
+    }
+
+   private:
+    [[nodiscard]] static float within(float value, float most) noexcept {
+      const float positive = value > 0.0F ? value : 0.0F;
+      return positive < most ? positive : most;
+    }
+    friend class GroundQuads;
+  };
+  [[nodiscard]] View view() const noexcept {
+    View view;
+    view.values = quads_.data()->value;
+    view.stride = stride_;
+    view.max_u = max_u_;
+    view.max_v = max_v_;
+    return view;
   }
-  [[nodiscard]] float at(CellPoint p) const noexcept { return at(p.u, p.v); }
+  [[nodiscard]] float at(CellPoint p) const noexcept { return view().at(p.u, p.v); }
 
  private:
   struct alignas(16) Quad {
     float value[4];  // (i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)
   };
-  [[nodiscard]] const float* data() const noexcept { return quads_.front().value; }
 
   std::vector<Quad> quads_;
   int stride_ = 0;

@@ -39,9 +39,11 @@ class LimbTable {
     const float* x = x_.data() + block * kBlock;
     const float* y = y_.data() + block * kBlock;
     const float* z = z_.data() + block * kBlock;
+    const CellPose here = pose;
+    const GroundQuads::View quads = ground.view();
     for (int i = 0; i < kBlock; ++i) {
-      const CellPoint p = pose.cells(x[i], y[i], z[i]);
-      gap_m[i] = pose.height_m(x[i], y[i], z[i]) - offset_m - ground.at(p.u, p.v);
+      const CellPoint p = here.cells(x[i], y[i], z[i]);
+      gap_m[i] = here.height_m(x[i], y[i], z[i]) - offset_m - quads.at(p.u, p.v);
     }
   }
 

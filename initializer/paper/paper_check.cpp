@@ -178,7 +178,7 @@ bool PaperCheck::belly_clear(const CellPose& pose) const noexcept {
   const auto below_m = static_cast<float>(-belly_m_);
   const float lowest_m =
       pose.height_m(0.0F, 0.0F, below_m) - belly_radius_m_ * std::hypot(pose.hx, pose.hy);
-  if (lowest_m - top_.at(pose.u, pose.v) >= least_m) return true;
+  if (lowest_m - top_.at({pose.u, pose.v}) >= least_m) return true;
   return std::all_of(p_base_belly_.begin(), p_base_belly_.end(), [&](const Eigen::Vector3f& p) {
     const CellPoint at = pose.cells(p.x(), p.y(), p.z());
     return pose.height_m(p.x(), p.y(), p.z()) - height_.at(at) >= least_m;

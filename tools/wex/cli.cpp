@@ -1,22 +1,13 @@
 #include "tools/wex/cli.hpp"
 
 #include <CLI/CLI.hpp>
-#include <map>
 
 #include "models/excavator/mjcf.hpp"
 #include "models/terrain/synthetic.hpp"
-#include "tools/bench/algorithm2_bench.hpp"
-#include "tools/bench/can_bench.hpp"
-#include "tools/bench/drive_bench.hpp"
-#include "tools/bench/initializer_bench.hpp"
-#include "tools/bench/kinematics_bench.hpp"
-#include "tools/bench/mpc_bench.hpp"
-#include "tools/bench/replan_bench.hpp"
-#include "tools/bench/roadmap_bench.hpp"
-#include "tools/bench/terrain_bench.hpp"
 #include "tools/check/check_command.hpp"
 #include "tools/wex/can_command.hpp"
-#include "tools/wex/initializer_bench_picture.hpp"
+#include "tools/wex/cli_bench.hpp"
+#include "tools/wex/cli_options.hpp"
 #include "tools/wex/machine_command.hpp"
 #include "tools/wex/output_folder.hpp"
 #include "tools/wex/pipeline.hpp"
@@ -44,28 +35,13 @@ struct Options {
   bool quiet = false;
   TerrainOptions terrain;
   ModelOptions model;
-  DriveBenchOptions drive_bench;
-  CanBenchOptions can_bench;
-  InitializerBenchOptions initializer_bench;
+  BenchOptions bench;
   MachineOptions can_machine;
   CanOptions can;
   ReplayOptions replay;
   check::CheckOptions check;
   RoadmapOptions roadmap;
-  RoadmapBenchOptions roadmap_bench;
-  ReplanBenchOptions replan_bench;
-  Algorithm2BenchOptions algorithm2_bench;
 };
-
-template <typename Parse>
-CLI::Validator parsed_by(Parse parse) {
-  return CLI::Validator(
-      [parse](std::string& text) {
-        const auto value = parse(text);
-        return value ? std::string() : value.error().message;
-      },
-      "");
-}
 
 void add_pose(CLI::App& command, const char* name, std::optional<Pose2>& pose, const char* help) {
   command
@@ -73,15 +49,6 @@ void add_pose(CLI::App& command, const char* name, std::optional<Pose2>& pose, c
           name, [&pose](const std::string& text) { pose = *parse_pose(text); }, help)
       ->check(parsed_by(parse_pose))
       ->type_name("X,Y,YAW");
-}
-
-void add_machine(CLI::App& command, std::string& machine) {
-  command
-      .add_option("--machine", machine,
-                  "Machine: a name in models/excavator/machines, or a folder with NAME.urdf and "
-                  "NAME.toml")
-      ->type_name("NAME")
-      ->capture_default_str();
 }
 
 void add_planning(CLI::App& command, Options& options) {
@@ -150,54 +117,6 @@ void add_run(CLI::App& app, Options& options) {
                                     "The machine's clock waits [as the machine announces]");
   add_pace("--real-time", CanPace::kRealTime, "The machine's clock does not wait")
       ->excludes(lock_step);
-}
-
-/// How plans are made, and what of it is switched off for a comparison.
-void add_plan_settings(CLI::App& command, PlanSettings& plan) {
-  static const std::map<std::string, PlanMode> kModes{{"certified", PlanMode::kCertified},
-                                                      {"drive", PlanMode::kDriveOnly},
-                                                      {"paper", PlanMode::kPaper}};
-  static const std::map<std::string, PlannerKind> kPlanners{{"rrtsharp", PlannerKind::kRrtSharp},
-                                                            {"rrtstar", PlannerKind::kRrtStar},
-                                                            {"bitstar", PlannerKind::kBitStar},
-                                                            {"prmstar", PlannerKind::kPrmStar}};
-  command
-      .add_option("--mode", plan.mode,
-                  "certified: drive where it can, step where it must; drive: on four wheels only; "
-                  "paper: the scheme as published")
-      ->transform(CLI::CheckedTransformer(kModes))
-      ->type_name("MODE")
-      ->default_str("certified");
-  command
-      .add_option("--stepping-penalty", plan.stepping_penalty,
-                  "Factor on the cost of lifting wheels: large to drive round, 0 to step freely")
-      ->check(CLI::Range(0.0, 1000.0))
-      ->type_name("F")
-      ->capture_default_str();
-  const auto add_ablation = [&](const char* name, bool& mechanism, const char* help) {
-    command.add_flag_callback(name, [&mechanism] { mechanism = false; }, help);
-  };
-  PlanAblation& ablation = plan.ablation;
-  add_ablation("--no-certificate-first", ablation.certificate_first,
-               "Ablation: search at once, without a certificate of the direct path");
-  add_ablation("--no-alignment", ablation.alignment, "Ablation: obstacles may be met at any angle");
-  add_ablation("--no-blocking", ablation.blocking, "Ablation: places where paths failed stay open");
-  add_ablation("--no-certified-tree", ablation.certified_tree,
-               "Ablation: no tree of certified states as fallback");
-  command
-      .add_option("--planner", plan.planner,
-                  "Of the paper's mode: rrtsharp, rrtstar, bitstar or prmstar")
-      ->transform(CLI::CheckedTransformer(kPlanners))
-      ->type_name("PLANNER")
-      ->default_str("rrtsharp");
-  add_ablation("--no-filtered-heights", ablation.filtered_heights,
-               "Ablation of the paper's mode: base poses by the raw terrain alone");
-  add_ablation("--no-nearest-traversable", ablation.nearest_traversable,
-               "Ablation of the paper's mode: base poses by the terrain underneath alone");
-  add_ablation("--no-arm-centring", ablation.arm_centring,
-               "Ablation of the paper's mode: on three wheels the arm stays where it is");
-  add_ablation("--no-arm-support", ablation.arm_support,
-               "Ablation of the paper's mode: the bucket never carries");
 }
 
 void add_plan(CLI::App& app, Options& options) {
@@ -369,125 +288,6 @@ void add_check(CLI::App& app, check::CheckOptions& check) {
   command.add_flag("--all", check.all, "List also rules that nothing was subject to");
 }
 
-void add_initializer_bench(CLI::App& bench, InitializerBenchOptions& options) {
-  CLI::App& command = *bench.add_subcommand(
-      "initializer",
-      "Plans over the twenty cells of terrain and difficulty, checked by others' eyes");
-  static const std::map<std::string, InitializerBenchSet> kSets{
-      {"cells", InitializerBenchSet::kCells},
-      {"hard", InitializerBenchSet::kHard},
-      {"beyond", InitializerBenchSet::kBeyond}};
-  command
-      .add_option("--set", options.set,
-                  "cells: the twenty and the side slope; hard: start and goal within 3 m and 90 "
-                  "degrees; beyond: larger obstacles than the paper's")
-      ->transform(CLI::CheckedTransformer(kSets))
-      ->type_name("SET")
-      ->default_str("cells");
-  command.add_option("--seeds", options.seeds, "Seeds per cell")
-      ->check(CLI::Range(1, 1000))
-      ->type_name("N")
-      ->capture_default_str();
-  command.add_flag("--quick", options.quick, "Two seeds, one second each");
-  command.add_option("--jobs", options.jobs, "Processes")
-      ->check(CLI::Range(1, 64))
-      ->type_name("N")
-      ->capture_default_str();
-  command.add_option("--cell", options.cells, "Only cells whose names begin so (repeatable) [all]")
-      ->type_name("NAME");
-  command.add_option("--out", options.out, "Folder for initializer_bench.csv and pictures")
-      ->type_name("DIR")
-      ->capture_default_str();
-  command.add_option("--time-budget", options.plan.time_budget_s, "CPU seconds per plan")
-      ->check(CLI::Range(0.01, 3600.0))
-      ->type_name("S")
-      ->capture_default_str();
-  add_plan_settings(command, options.plan);
-}
-
-void add_bench(CLI::App& app, Options& options) {
-  DriveBenchOptions& drive = options.drive_bench;
-  CanBenchOptions& can = options.can_bench;
-  CLI::App& command = *app.add_subcommand("bench", "Measure: medians and percentiles on stdout");
-  command.require_subcommand(1);
-  command.add_subcommand("terrain", "Terrain layers and queries");
-  command.add_subcommand("kinematics", "Kinematics with first and second derivatives");
-  command.add_subcommand("mpc", "Refinement and receding-horizon solves");
-  CLI::App& bus = *command.add_subcommand(
-      "can",
-      "The bus: every test of protocol, interface and electronics, with faults, in one table");
-  bus.add_flag("--full", can.full, "All of it, about 75 minutes [under 6 minutes]");
-  bus.add_option("--only", can.only, "Only these tests (repeatable), the others' rows as they were")
-      ->type_name("T1..T22");
-  bus.add_option("--out", can.out, "Folder for can_bench.csv and the log")
-      ->type_name("DIR")
-      ->capture_default_str();
-  add_initializer_bench(command, options.initializer_bench);
-  CLI::App& algorithm2 = *command.add_subcommand(
-      "algorithm2", "Checks per second of the paper's Algorithm 2, beside the plain loop");
-  algorithm2.add_option("--repeats", options.algorithm2_bench.repeats, "Repeats of each")
-      ->check(CLI::Range(1, 1000))
-      ->type_name("N")
-      ->capture_default_str();
-  CLI::App& replanning = *command.add_subcommand(
-      "replan", "Planning again after 10 m2 of ground changed, beside planning from scratch");
-  replanning.add_option("--seeds", options.replan_bench.seeds, "Seeds per terrain")
-      ->check(CLI::Range(1, 1000))
-      ->type_name("N")
-      ->capture_default_str();
-  replanning.add_flag("--verbose", options.replan_bench.verbose, "A line for every change");
-  replanning
-      .add_option("--time-budget", options.replan_bench.plan.time_budget_s,
-                  "Seconds of computing for each plan before the change")
-      ->check(CLI::Range(0.01, 3600.0))
-      ->type_name("S")
-      ->capture_default_str();
-  CLI::App& roadmaps =
-      *command.add_subcommand("roadmap", "Building and loading of limb roadmaps, arm motions");
-  roadmaps.add_option("--repeats", options.roadmap_bench.repeats, "Repeats of each")
-      ->check(CLI::Range(1, 1000))
-      ->type_name("N")
-      ->capture_default_str();
-  add_machine(roadmaps, options.roadmap_bench.machine);
-  CLI::App& drives = *command.add_subcommand(
-      "drive", "Whole runs over several terrains and seeds: success counts and worst figures");
-  drives.add_option("--seeds", drive.seeds, "Seeds per terrain")
-      ->check(CLI::Range(1, 1000))
-      ->type_name("N")
-      ->capture_default_str();
-  drives.add_flag("--quick", drive.quick, "One seed of flat and rough only");
-  drives.add_option("--out", drive.out, "Folder for the runs and drive_bench.csv")
-      ->type_name("DIR")
-      ->capture_default_str();
-  drives.add_option("--jobs", drive.jobs, "Runs at a time")
-      ->check(CLI::Range(1, 64))
-      ->type_name("N")
-      ->capture_default_str();
-  drives.add_option("--case", drive.cases, "Only these cases (repeatable) [all]")
-      ->type_name("NAME");
-  drives.add_flag("--resume", drive.resume, "Keep runs whose result.json is there");
-  drives.add_option("--map", drive.real_maps, "Real maps instead of the bundled ones (repeatable)")
-      ->type_name("MAP");
-  drives
-      .add_option("--solve-delay", drive.solve_delay,
-                  "As in wex run; on a loaded computer, inside User-Mode Linux, milliseconds stand "
-                  "for a free one [measured]")
-      ->check(parsed_by(parse_solve_delay))
-      ->type_name("measured|MS");
-  CLI::Option& interface = *drives.add_option(
-      "--can", drive.can_interface,
-      "Each run as two processes over this CAN interface, one run at a time: judged by the "
-      "machine's own log");
-  interface.type_name("IFACE")->check(parsed_by(check_interface_name));
-  drives.add_flag("--real-time", drive.real_time, "On the bus: the machine's clock does not wait")
-      ->needs(&interface);
-}
-
-int refuse(std::ostream& err, const Error& error) {
-  err << "wex: " << error.message << "\n";
-  return exit_code(error.code);
-}
-
 int run_command(const Options& options, std::ostream& out, std::ostream& err) {
   Progress progress(err, options.quiet);
   const Result<RunReport> report = run_pipeline(options.run, progress);
@@ -528,40 +328,6 @@ int model_command(const ModelOptions& options, std::ostream& out, std::ostream& 
   }
   out << options.mjcf.string() << "\n";
   return 0;
-}
-
-int initializer_bench_command(const InitializerBenchOptions& options, std::ostream& out,
-                              std::ostream& err) {
-  const Result<InitializerBenchOutcome> outcome = bench_initializer(options, out, err);
-  if (!outcome) return refuse(err, outcome.error());
-  if (const auto drawn = draw_initializer_bench(*outcome, options.out); !drawn) {
-    return refuse(err, drawn.error());
-  }
-  return outcome->rates_hold ? 0 : 5;
-}
-
-int bench_command(const CLI::App& command, const Options& options, std::ostream& out,
-                  std::ostream& err) {
-  const std::string name = command.get_subcommands().front()->get_name();
-  if (name == "terrain") return bench_terrain();
-  if (name == "kinematics") return bench_kinematics();
-  if (name == "mpc") return bench_mpc();
-  if (name == "initializer") return initializer_bench_command(options.initializer_bench, out, err);
-  if (name == "algorithm2") {
-    const Result<void> done = bench_algorithm2(options.algorithm2_bench, out);
-    return done ? 0 : refuse(err, done.error());
-  }
-  if (name == "replan") {
-    const Result<void> done = bench_replan(options.replan_bench, out);
-    return done ? 0 : refuse(err, done.error());
-  }
-  if (name == "roadmap") {
-    const Result<void> done = bench_roadmap(options.roadmap_bench, out);
-    return done ? 0 : refuse(err, done.error());
-  }
-  const Result<int> code = name == "can" ? bench_can(options.can_bench, out, err)
-                                         : bench_drive(options.drive_bench, out, err);
-  return code ? *code : refuse(err, code.error());
 }
 
 /// Help of the deepest command named.
@@ -619,7 +385,7 @@ int run_cli(int argc, const char* const* argv, std::ostream& out, std::ostream& 
   add_plan(app, options);
   add_terrain(app, options.terrain);
   add_model(app, options.model);
-  add_bench(app, options);
+  add_bench(app, options.bench);
   add_can_machine(app, options.can_machine);
   add_can(app, options.can);
   add_replay(app, options.replay);
@@ -643,7 +409,7 @@ int run_cli(int argc, const char* const* argv, std::ostream& out, std::ostream& 
   const std::string name = command.get_name();
   if (name == "terrain") return terrain_command(options.terrain, out, err);
   if (name == "model") return model_command(options.model, out, err);
-  if (name == "bench") return bench_command(command, options, out, err);
+  if (name == "bench") return bench_command(command, options.bench, out, err);
   if (name == "check") {
     const Result<int> code = check::run_check(options.check, out);
     return code ? *code : refuse(err, code.error());
