@@ -81,6 +81,20 @@ int bridge_bench_command(const BridgeBenchOptions& options, std::ostream& out, s
   return outcome->holds ? 0 : 5;
 }
 
+void add_replan_bench(CLI::App& bench, ReplanBenchOptions& options) {
+  CLI::App& command = *bench.add_subcommand(
+      "replan", "Planning again after 10 m2 of ground changed, beside planning from scratch");
+  command.add_option("--seeds", options.seeds, "Seeds per terrain")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  command.add_flag("--verbose", options.verbose, "A line for every change");
+  command.add_option("--time-budget", options.plan.time_budget_s, "CPU seconds per plan")
+      ->check(CLI::Range(0.01, 3600.0))
+      ->type_name("S")
+      ->capture_default_str();
+}
+
 int initializer_bench_command(const InitializerBenchOptions& options, std::ostream& out,
                               std::ostream& err) {
   const Result<InitializerBenchOutcome> outcome = bench_initializer(options, out, err);
@@ -118,6 +132,7 @@ void add_bench(CLI::App& app, BenchOptions& options) {
       ->check(CLI::Range(1, 1000))
       ->type_name("N")
       ->capture_default_str();
+  add_replan_bench(command, options.replan);
   CLI::App& roadmaps =
       *command.add_subcommand("roadmap", "Building and loading of limb roadmaps, arm motions");
   roadmaps.add_option("--repeats", options.roadmap.repeats, "Repeats of each")
@@ -169,6 +184,10 @@ int bench_command(const CLI::App& command, const BenchOptions& options, std::ost
   if (name == "bridge") return bridge_bench_command(options.bridge, out, err);
   if (name == "algorithm2") {
     const Result<void> done = bench_algorithm2(options.algorithm2, out);
+    return done ? 0 : refuse(err, done.error());
+  }
+  if (name == "replan") {
+    const Result<void> done = bench_replan(options.replan, out);
     return done ? 0 : refuse(err, done.error());
   }
   if (name == "roadmap") {

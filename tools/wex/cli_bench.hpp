@@ -8,6 +8,7 @@
 #include "tools/bench/can_bench.hpp"
 #include "tools/bench/drive_bench.hpp"
 #include "tools/bench/initializer_bench.hpp"
+#include "tools/bench/replan_bench.hpp"
 #include "tools/bench/roadmap_bench.hpp"
 
 namespace wex::app {
@@ -17,6 +18,7 @@ struct BenchOptions {
   DriveBenchOptions drive;
   CanBenchOptions can;
   InitializerBenchOptions initializer;
+  ReplanBenchOptions replan;
   RoadmapBenchOptions roadmap;
   Algorithm2BenchOptions algorithm2;
   BridgeBenchOptions bridge;
