@@ -43,6 +43,13 @@ TEST(StoppingSpeedTest, TheShareBringsTheMeanToTheLimitOfTheWayItGoes) {
   EXPECT_DOUBLE_EQ(speed.share_of(0.6, 0.0, 20.0 * kDegree) * 0.6, speed.at(0.0, 20.0 * kDegree));
 }
 
+TEST(StoppingSpeedTest, StaysBelowWhatWasMeasured) {
+  const double measured_m_s[] = {0.70, 0.60, 0.51, 0.37, 0.25};
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_LT(StoppingSpeed{}.at(5.0 * i * kDegree), measured_m_s[i]) << 5 * i << " degrees";
+  }
+}
+
 TEST(TiltTest, IsTheAngleOfTheVerticalAxis) {
   EXPECT_NEAR(tilt_of(0.2, 0.0), 0.2, 1e-12);
   EXPECT_NEAR(tilt_of(0.0, -0.3), 0.3, 1e-12);
@@ -145,6 +152,23 @@ TEST_F(SlewAgainstTheModelTest, InertiaAndMomentBoundTheModelsFromAboveAndNotFar
     ++count;
   });
   EXPECT_LT(mean_excess / count, 0.1);
+}
+
+TEST(ArmReachTest, TheBucketTurnsAboutTheWrist) {
+  const ReachingJoints q{0.5, 0.2, 0.3, -0.84};  // the bucket's frame along the floor
+  EXPECT_NEAR(ArmReach::of(q).bucket_m, ArmReach::of(q).wrist_m + 0.5, 1e-12);
+  EXPECT_NEAR(ArmReach::of({0.5, 0.2, 0.3, -0.84 + 0.25}).bucket_m,
+              ArmReach::of(q).wrist_m + 0.5 * (std::cos(0.25) + std::sin(0.25)), 1e-12);
+}
+
+TEST(StoppingSlewTest, MassesCountByTheirDistanceOnEitherSide) {
+  const StoppingSlew slew;
+  EXPECT_DOUBLE_EQ(slew.inertia_kg_m2({}), 6200.0);
+  EXPECT_DOUBLE_EQ(slew.inertia_kg_m2({2.0, 3.0, 4.0}), 6200.0 + 2800.0 + 4500.0 + 17600.0);
+  EXPECT_DOUBLE_EQ(slew.inertia_kg_m2({-2.0, -3.0, -4.0}), slew.inertia_kg_m2({2.0, 3.0, 4.0}));
+  EXPECT_DOUBLE_EQ(slew.moment_kg_m({}), 0.0);
+  EXPECT_DOUBLE_EQ(slew.moment_kg_m({2.0, 3.0, 4.0}), 1400.0 + 1500.0 + 4400.0);
+  EXPECT_DOUBLE_EQ(slew.moment_kg_m({-2.0, -3.0, -4.0}), slew.moment_kg_m({2.0, 3.0, 4.0}));
 }
 
 TEST(StoppingSlewTest, FurtherOutAndOnSlopesItIsSlower) {

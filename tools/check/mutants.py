@@ -10,7 +10,7 @@ WORDS = {"true": "false", "false": "true", "std::min": "std::max", "std::max": "
 OPERATOR = re.compile(r"(?<= )(?:" + "|".join(
     re.escape(op) for op in sorted(SWAPS, key=len, reverse=True)) + r")(?= |$)")
 WORD = re.compile(r"(?<![\w:])(?:" + "|".join(map(re.escape, WORDS)) + r")(?![\w:])")
-INTEGER = re.compile(r"(?<![\w.'\"])\d+(?:'\d+)*(?![\w.'])")
+INTEGER = re.compile(r"(?<![\w.'\"])(?<!\de-)\d+(?:'\d+)*(?![\w.'])")
 REAL = re.compile(r"(?<![\w.'])\d+(?:\.\d+)?(?:e-?\d+)?(?![\w.])")
 CONDITION = re.compile(r"(?<=\bif \()(.*)(?=\) (?:\{|[\w+*-]))")
 NEGATION = re.compile(r"(?<=[( ])!(?=[\w(])")

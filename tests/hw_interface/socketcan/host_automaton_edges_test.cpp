@@ -53,7 +53,7 @@ TEST_F(HostAutomaton, AgesCountFromAMicrosecondBeforeTheirLimit) {
     in_.*c.age = c.limit_s - 1.1e-6;
     step();
     EXPECT_EQ(state_.phase, HostPhase::kActive) << c.limit_s;
-    in_.*c.age = c.limit_s - 0.9e-6;
+    in_.*c.age = c.limit_s - 1e-6;
     step();
     EXPECT_EQ(state_.phase, HostPhase::kHold) << c.limit_s;
     in_ = HostInputs{};
@@ -156,6 +156,30 @@ TEST_F(HostAutomaton, EveryStepOfTheHandshakeHasItsOwnSecond) {
   EXPECT_EQ(state_.phase, HostPhase::kProving);
   steps(3);
   EXPECT_EQ(state_.phase, HostPhase::kInactive);
+}
+
+TEST_F(HostAutomaton, AnAnswerAfterExactlyASecondIsInTime) {
+  state_.phase = HostPhase::kAsking;
+  in_.now_s = 1.0;
+  EXPECT_EQ(advance(state_, in_, times_).phase, HostPhase::kAsking);
+  in_.now_s = 1.0 + 1e-9;
+  EXPECT_EQ(advance(state_, in_, times_).phase, HostPhase::kInactive);
+}
+
+TEST_F(HostAutomaton, TheRequestStandsThroughTheSession) {
+  ask();
+  EXPECT_EQ(out().request, HostRequest::kEnable);
+  challenge();
+  EXPECT_EQ(out().request, HostRequest::kEnable);
+  prove();
+  in_.mode = MachineMode::kEnabled;
+  step();
+  ASSERT_EQ(state_.phase, HostPhase::kActive);
+  EXPECT_EQ(out().request, HostRequest::kEnable);
+  in_.stop = true;
+  step();
+  ASSERT_EQ(state_.phase, HostPhase::kHold);
+  EXPECT_EQ(out().request, HostRequest::kEnable);
 }
 
 TEST_F(HostAutomaton, DisablingOrStoppingTakesTheRequestBack) {

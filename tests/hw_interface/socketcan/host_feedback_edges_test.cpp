@@ -33,9 +33,13 @@ TEST_F(HostFeedbackTest, EveryJointIsReadFromItsPlace) {
     pressures_[zone].pressure_a_pa[index] = 2e3 * (100 + i);
     pressures_[zone].pressure_b_pa[index] = 2e3 * 50;
   }
+  pose_.pitch_rad = 0.125;
+  pose_.roll_rad = -0.25;
   give_all();
   const MachineState state = feedback_.state(now_ns_);
   const JointMeasurement measured = feedback_.measurement();
+  EXPECT_NEAR(measured.pitch_rad, 0.125, 1e-5);
+  EXPECT_NEAR(measured.roll_rad, -0.25, 1e-5);
   for (int i = 0; i < m545().num_joints(); ++i) {
     const Joint& joint = m545().joints[i];
     const SlotLimits limits = limits_of(slot_of(joint.name));
@@ -134,11 +138,50 @@ TEST_F(HostFeedbackTest, APersonsFramesFromBeforeTheRestartAreNoEdge) {
   EXPECT_FALSE(feedback_.take_operator_reset());
 }
 
+/// A counter that is not what follows.
+void jumps(SendContext& context, int by = 50) {
+  context.counter = static_cast<std::uint8_t>(context.counter + by);
+}
+
+TEST_F(HostFeedbackTest, AfterARestartCountersMayBeginAnywhere) {
+  give_all();
+  give(OperatorCommand{}, operator_context_);
+  stamp_ms_ -= 2000;
+  jumps(zone_context_[3]);
+  give_zone(3);  // tells of the restart
+  ASSERT_TRUE(feedback_.take_restart());
+  for (SendContext* context :
+       {&zone_context_[0], &pressure_context_[0], &status_context_[0], &imu_context_,
+        &pose_context_, &estop_context_, &operator_context_}) {
+    jumps(*context);
+  }
+  imu_.sample_time_ms = stamp_ms_;
+  give_zone(0);
+  give_pose();
+  EXPECT_EQ(give(pressures_[0], pressure_context_[0]), FrameVerdict::kUsed);
+  EXPECT_EQ(give(statuses_[0], status_context_[0]), FrameVerdict::kUsed);
+  EXPECT_EQ(give(imu_, imu_context_), FrameVerdict::kUsed);
+  EXPECT_EQ(give(estop_, estop_context_), FrameVerdict::kUsed);
+  EXPECT_EQ(give(OperatorCommand{}, operator_context_), FrameVerdict::kUsed);
+}
+
+TEST_F(HostFeedbackTest, AJumpOfACounterIsALossAsFarAsTimeExplainsIt) {
+  give_all();                                              // the e-stop's report: every 10 ms
+  for (const int elapsed_ns : {99'500'200, 99'499'800}) {  // half a millisecond is rounding
+    now_ns_ += elapsed_ns;
+    jumps(estop_context_, 11);
+    EXPECT_EQ(give(estop_, estop_context_) == FrameVerdict::kUsed, elapsed_ns > 99'500'000);
+  }
+  for (int i = 0; i < 10; ++i) {
+    now_ns_ += 10 * kMs;
+    give(estop_, estop_context_);
+  }
+  jumps(estop_context_, 9);
+  EXPECT_EQ(give(estop_, estop_context_), FrameVerdict::kWrongSequence) << "no time has passed";
+}
+
 TEST_F(HostFeedbackTest, CountersFromBeforeTheFirstStampGoOn) {
   // Their age is not known, so they are taken as new: what follows must be in order.
-  const auto jumps = [](SendContext& context) {
-    context.counter = static_cast<std::uint8_t>(context.counter + 50);
-  };
   give(pressures_[3], pressure_context_[3]);
   give(statuses_[3], status_context_[3]);
   give(estop_, estop_context_);
@@ -201,6 +244,19 @@ TEST_F(HostFeedbackTest, ReportsAreAsOldAsTheOldestZones) {
   EXPECT_NEAR(feedback_.estop_age_s(now_ns_), 0.030, 1e-6);
   give(estop_, estop_context_);
   EXPECT_NEAR(feedback_.estop_age_s(now_ns_), 0.0, 1e-6);
+}
+
+TEST_F(HostFeedbackTest, FeedbackIsAsOldAsItsOldestReading) {
+  for (int i = 0; i < m545().num_joints(); ++i) {
+    give_all();
+    const auto [zone, index] = slot_of(m545().joints[i].name);
+    zones_[zone].quality[index] = JointQuality::kStale;
+    pass(20);
+    give_all();
+    EXPECT_NEAR(feedback_.feedback_age_s(now_ns_), 0.020, 1e-6) << m545().joints[i].name;
+    zones_[zone].quality[index] = JointQuality::kOk;
+    pass(10);
+  }
 }
 
 TEST_F(HostFeedbackTest, ARepeatedFrameLeavesTheAgeAsItIs) {
@@ -308,6 +364,20 @@ TEST_F(HostFeedbackTest, WrongCrcsCountWithinASecond) {
   pass(900);
   corrupted();
   EXPECT_TRUE(feedback_.take_crc_fault());
+}
+
+TEST_F(HostFeedbackTest, TheFirstFourWrongCrcsCountAsWell) {
+  for (const int last_ms : {999, 1000}) {
+    feedback_ = HostFeedback::create(m545(), {0.0, 0.0}).value();
+    stamp_ms_ = 5000;
+    give_zone(0);
+    CanFrame frame = frame_of(zones_[0], zone_context_[0]);
+    frame.data[20] ^= 0x10;
+    for (int i = 0; i < 3; ++i) feedback_.take(frame, now_ns_);
+    pass(last_ms);
+    feedback_.take(frame, now_ns_);
+    EXPECT_EQ(feedback_.take_crc_fault(), last_ms < 1000);
+  }
 }
 
 TEST_F(HostFeedbackTest, AsManyWrongCrcsAsCanBeAskedForAreToldApart) {
