@@ -41,7 +41,7 @@ TEST_F(RoadmapCommand, PrintsEveryLimbAndDrawsBothViews) {
   const auto done = run();
   ASSERT_TRUE(done) << done.error().message;
   for (const std::string_view limb : kLimbNames) {
-    EXPECT_THAT(text_.str(), HasSubstr("\n" + std::string(limb) + " "));
+    EXPECT_THAT(text_.str(), HasSubstr(std::string("\n").append(limb).append(" ")));
   }
   for (const char* picture : {"roadmap_side.png", "roadmap_top.png"}) {
     EXPECT_GT(fs::file_size(options_.out / picture), 10000U);

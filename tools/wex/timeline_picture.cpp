@@ -1,5 +1,22 @@
-template <typename Value>
-Curve curve(std::string name, const Color& color, const std::vector<DriveSample>& samples,
+#include "tools/wex/timeline_picture.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "models/types/contact_schedule.hpp"
+#include "tools/wex/support_margin.hpp"
+#include "tools/wex/timeline.hpp"
+
+namespace wex::app {
+namespace {
+
+constexpr Color kBlue{0.10, 0.35, 0.80}, kOrange{0.90, 0.45, 0.00}, kUnusable{0.75, 0.15, 0.10};
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+template <typename Sample, typename Value>
+Curve curve(std::string name, const Color& color, const std::vector<Sample>& samples,
             const Value& value) {
   Curve c{std::move(name), color, {}, false};
   for (const Sample& s : samples) c.points.emplace_back(s.t_s, value(s));
