@@ -436,6 +436,13 @@ PaperStance PaperCheck::stand(const BaseCoordinates& base) const noexcept {
   return stance;
 }
 
-PaperStance PaperCheck::stand(const Pose2& pose) const noexcept { return stand(base_at(pose)); }
+PaperStance PaperCheck::stand(const Pose2& pose) const noexcept {
+  if (!terrain_->known({pose.x_m, pose.y_m})) {
+    PaperStance nowhere;
+    nowhere.rejection = PaperRejection::kOffMap;
+    return nowhere;
+  }
+  return stand(base_at(pose));
+}
 
 }  // namespace wex

@@ -72,36 +72,5 @@ TEST_F(PaperPlan, SaysWhatStoodInTheWayWhenThereIsNoPlan) {
   EXPECT_THAT(none.error().message, testing::Not(testing::HasSubstr("found and lost")));
 }
 
-TEST_F(PaperPlan, PostProcessingChangesOneContactAtATimeOverAHole) {
-  // Under the left wheels alone, short enough for one of them at a time.
-  const double left_m = default_wheel(Limb::kLF).y();
-  const TerrainMap map = make_map(30.0, 20.0, [&](double x, double y) {
-    return std::abs(x) < 0.5 && y > left_m - 0.9 && y < left_m + 2.0 ? -3.0 : 0.0;
-  });
-  const PlanSettings settings;
-  const PaperCheck check = paper_check(map, settings);
-  auto post = PostProcessing::build(map, test_machine(), test_roadmaps(), check, settings);
-  ASSERT_TRUE(post);
-  const auto nodes = post->nodes({{{-5.0, 0.0, 0.0}, 0.0, 10.0}});
-  ASSERT_TRUE(nodes) << describe(nodes.error().stage) << ": " << nodes.error().why << " at x "
-                     << nodes.error().where.x_m;
-  int changes = 0;
-  std::array<bool, kNumLimbs> was_lifted{};
-  for (std::size_t i = 1; i < nodes->size(); ++i) {
-    int here = 0;
-    for (std::size_t k = 0; k < kNumLimbs; ++k) {
-      here += (*nodes)[i].contacts[k] != (*nodes)[i - 1].contacts[k];
-      was_lifted[k] = was_lifted[k] || !(*nodes)[i].contacts[k];
-    }
-    EXPECT_LE(here, 1) << "node " << i;
-    EXPECT_GT((*nodes)[i].t_s, (*nodes)[i - 1].t_s);
-    changes += here;
-  }
-  EXPECT_GE(changes, 4);  // both left wheels up and down
-  EXPECT_TRUE(was_lifted[0] && was_lifted[2]);
-  EXPECT_FALSE(was_lifted[1] || was_lifted[3]);
-  EXPECT_EQ(nodes->back().contacts, kDrivingContacts);
-}
-
 }  // namespace
 }  // namespace wex

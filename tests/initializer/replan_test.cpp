@@ -78,7 +78,7 @@ std::size_t num_lifts(const Plan& plan) {
 
 TEST(GroundChange, AChangedCellIsFoundWhereItIsAndNotElsewhere) {
   const TerrainMap before = make_map(20.0, 20.0, flat());
-  const TerrainMap after = make_map(20.0, 20.0, with_block(flat(), square(3.0, -2.0, 0.15), 0.02));
+  const TerrainMap after = make_map(20.0, 20.0, with_block(flat(), square(3.0, -2.0, 0.15), 0.1));
   const auto change = GroundChange::between(before, after, std::nullopt);
   ASSERT_TRUE(change);
   EXPECT_FALSE(change->none());

@@ -204,19 +204,19 @@ TEST(StanceCheck, AClawThatWouldMeetAWallOnItsWayUpMayNotBeLifted) {
 
 TEST(StanceCheck, AWheelThatWouldTouchABlockBesideItsFootholdMayNotBeLifted) {
   // The base is high: front wheels stand at x = 2.2 and pass 2.54 on their way up.
-  const auto stance_before = [](double height_m) {
-    const World world([&](double x, double) { return x > 3.05 ? height_m : 0.0; });
+  const auto stance_before = [](double block_x_m) {
+    const World world([&](double x, double) { return x > block_x_m ? 1.3 : 0.0; });
     return world.stance(base_at(0.0, 1.33));
   };
-  const Stance high = stance_before(1.3), low = stance_before(0.5);
-  for (const Stance& stance : {high, low}) {
+  const Stance near = stance_before(3.15), far = stance_before(3.6);
+  for (const Stance& stance : {near, far}) {
     EXPECT_EQ(stance.grounded, kAllWheels);
     EXPECT_EQ(stance.swing_clear & kFrontWheels, kFrontWheels);
     EXPECT_TRUE(stance.allows(kFrontWheels));
   }
-  EXPECT_EQ(high.sweep_clear & kFrontWheels, 0);
-  EXPECT_FALSE(high.may_lift(kFrontWheels));
-  EXPECT_TRUE(low.may_lift(kFrontWheels));
+  EXPECT_EQ(near.sweep_clear & kFrontWheels, 0);
+  EXPECT_FALSE(near.may_lift(kFrontWheels));
+  EXPECT_TRUE(far.may_lift(kFrontWheels));
 }
 
 TEST(StanceCheck, StandingWheelsAreDiscsOnSlopedGround) {
