@@ -85,6 +85,15 @@ TEST_F(HostMailboxTest, CommandsCarryTheSession) {
   EXPECT_EQ(meta->counter, 0);
 }
 
+TEST_F(HostMailboxTest, WhatWasTakenIsNotSentAgain) {
+  EXPECT_EQ(mailbox_.sent_counter(HostMailbox::kHeartbeat), 0);
+  put_all();
+  flush();
+  port_.sent.clear();
+  EXPECT_EQ(flush(), SocketStatus::kOk);
+  EXPECT_TRUE(port_.sent.empty());
+}
+
 TEST_F(HostMailboxTest, ClearedItHoldsNothing) {
   put_all();
   mailbox_.clear();
