@@ -28,6 +28,7 @@ class TrajectoryProblemTest : public ::testing::TestWithParam<bool> {
     }
     setup.before_first = setup.reference[0] - 0.1 * (setup.reference[1] - setup.reference[0]);
     setup.tracking = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0};
+    setup.tracking_tail_s = 1.5;
     setup.rates = {0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1};
     setup.accelerations = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7};
     add_driving_constraints(setup, terrain_,

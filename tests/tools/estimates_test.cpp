@@ -47,6 +47,28 @@ TEST_F(Estimates, TheFirstHeightIsTakenAtOnceAndChangesAreLowPassed) {
   EXPECT_THROW(bias.update(9.0, q_), std::logic_error);
 }
 
+// Where the hips were told to be is not where the ground is: a drive would follow its own error.
+TEST_F(Estimates, HipsThatAreBentAgainstEachOtherAreNoGround) {
+  constexpr double kBend = 0.03;
+  constexpr std::array<double, kNumWheels> kWarp{1.0, -1.0, -1.0, 1.0};  // LF and RH, RF and LH
+  Eigen::VectorXd bent = q_;
+  for (int i = 0; i < kNumWheels; ++i) bent[machine_.legs[i].hfe] += kBend * kWarp[i];
+  bent[kBaseZ] += 0.02;
+  HeightBias bias(terrain_, machine_);
+  bias.update(0.0, bent);
+  for (const double value : bias.value_m()) EXPECT_NEAR(value, 0.02, 5e-3);
+}
+
+TEST_F(Estimates, ATiltedBaseIsTakenAsItIs) {
+  constexpr double kRoll = 0.02;  // the left side goes up
+  Eigen::VectorXd tilted = q_;
+  tilted[kBaseRoll] += kRoll;
+  HeightBias bias(terrain_, machine_);
+  bias.update(0.0, tilted);
+  EXPECT_GT(bias.value_m()[0], 0.01);
+  EXPECT_NEAR(bias.value_m()[1], -bias.value_m()[0], 5e-3);
+}
+
 TEST_F(Estimates, FourWheelsSupportBetterThanThreeAndTwoNotAtAll) {
   const double four_m = support_margin_m(machine_, q_, kDrivingContacts);
   EXPECT_GT(four_m, 0.9);
