@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace wex {
 namespace {
@@ -40,6 +41,13 @@ JointLoop::JointLoop(const MachineModel& machine, const JointLoopSettings& setti
     const bool is_turn = machine.arm && !machine.arm->coordinates.empty() &&
                          machine.arm->coordinates.front() == kNumBaseCoordinates + i;
     data.takes_target = !data.wheel && !is_turn;
+    if (is_turn) turn_joint_ = i;
+  }
+  constexpr std::array<const char*, 4> kReachingJoints{"BOOM", "DIPPER", "TELE", "EE_PITCH"};
+  for (std::size_t i = 0; i < kReachingJoints.size(); ++i) {
+    if (const auto coordinate = machine.coordinate(kReachingJoints[i])) {
+      reaching_joints_[i] = *coordinate - kNumBaseCoordinates;
+    }
   }
   for (int leg = 0; leg < kNumWheels; ++leg) {
     const WheeledLeg& wheeled_leg = machine.legs[leg];
@@ -120,13 +128,28 @@ void JointLoop::update_stall(const JointCommand* command,
   }
 }
 
+double JointLoop::largest_slew_rate(const JointMeasurement& measured) const noexcept {
+  // An arm of other joints has an unknown reach: not a number, hence the least.
+  const auto pick = [this](const std::array<double, kMaxJoints>& of) {
+    const auto value = [&of](int joint) {
+      return joint < 0 ? std::numeric_limits<double>::quiet_NaN() : of[joint];
+    };
+    const auto [boom, dipper, tele, ee_pitch] = reaching_joints_;
+    return ReachingJoints{value(boom), value(dipper), value(tele), value(ee_pitch)};
+  };
+  return settings_.travel_margin *
+         settings_.slew.at(pick(measured.position), pick(measured.rate),
+                           tilt_of(measured.pitch_rad, measured.roll_rad));
+}
+
 void JointLoop::limit_travel(std::array<double, kNumWheels>& asked,
-                             double pitch_rad) const noexcept {
+                             const JointMeasurement& measured) const noexcept {
   double travel_m_s = 0.0;
   for (int leg = 0; leg < kNumWheels; ++leg) {
     travel_m_s += wheel_sign_[leg] * wheel_radius_m_[leg] * asked[leg] / kNumWheels;
   }
-  const double share = settings_.travel.share_of(travel_m_s / settings_.travel_margin, pitch_rad);
+  const double share = settings_.travel.share_of(travel_m_s / settings_.travel_margin,
+                                                 measured.pitch_rad, measured.roll_rad);
   for (double& rate : asked) rate *= share;
 }
 
@@ -165,7 +188,7 @@ void JointLoop::update_wheels(const JointCommand* command, const JointMeasuremen
     const double max_rate = joints_[wheel_joint_[leg]].max_rate;
     asked[leg] = std::clamp(command->rate[wheel_joint_[leg]], -max_rate, max_rate);
   }
-  limit_travel(asked, measured.pitch_rad);
+  limit_travel(asked, measured);
   update_ramps(asked, end_motion);
   double droop_rad_s = 0.0, latch_error_rad = 0.0;
   int driven = 0;
@@ -219,6 +242,10 @@ ActuatorCommand JointLoop::update(const JointCommand* command,
   ActuatorCommand out;
   for (int i = 0; i < num_joints_; ++i) {
     if (!joints_[i].wheel) out.rate[i] = hydraulic_rate(i, command, measured.position[i]);
+  }
+  if (turn_joint_ >= 0) {
+    const double largest = largest_slew_rate(measured);
+    out.rate[turn_joint_] = std::clamp(out.rate[turn_joint_], -largest, largest);
   }
   share_pump(out);
   for (int i = 0; i < num_joints_; ++i) {

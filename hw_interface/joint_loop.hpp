@@ -22,7 +22,8 @@ struct JointLoopSettings {
   double stall_rate_fraction = 0.2;    ///< of the commanded rate
   double stall_effort_fraction = 0.7;  ///< of the joint's largest effort
   StoppingSpeed travel;
-  double travel_margin = 0.97;  ///< of it: what passes here is not cut by the electronics
+  StoppingSlew slew;
+  double travel_margin = 0.97;  ///< of both: what passes here is not cut by the electronics
   bool load_balance = true;
   LoadBalanceSettings balance;
 };
@@ -30,7 +31,7 @@ struct JointLoopSettings {
 /// What the sensors say in one control period. Joint order as in MachineModel::joints.
 struct JointMeasurement {
   std::array<double, kMaxJoints> position{}, rate{}, effort{};
-  double pitch_rad = 0.0;  ///< of the base, nose down > 0
+  double pitch_rad = 0.0, roll_rad = 0.0;  ///< of the base, nose down > 0
 };
 
 /// What goes to the actuators in one control period.
@@ -43,7 +44,7 @@ struct ActuatorCommand {
 ///   rate = feed-forward + gain (target - measured), limited in rate, acceleration and end stops;
 ///   all hydraulic rates share the pump's flow; wheels follow a ramp, together no faster than can
 ///   be stopped in time on this slope, stop on stall and are latched at their angle while nothing
-///   is asked of them.
+///   is asked of them. The cabin slews no faster than can be stopped with the arm where it is.
 /// Control-rate code: no allocation, nothing thrown after construction.
 class JointLoop {
  public:
@@ -80,7 +81,9 @@ class JointLoop {
   double hydraulic_rate(int joint, const JointCommand* command, double position) const noexcept;
   void share_pump(ActuatorCommand& out) const noexcept;
   void update_stall(const JointCommand* command, const JointMeasurement& measured) noexcept;
-  void limit_travel(std::array<double, kNumWheels>& asked, double pitch_rad) const noexcept;
+  void limit_travel(std::array<double, kNumWheels>& asked,
+                    const JointMeasurement& measured) const noexcept;
+  double largest_slew_rate(const JointMeasurement& measured) const noexcept;
   void update_ramps(const std::array<double, kNumWheels>& asked, bool end_motion) noexcept;
   void update_wheels(const JointCommand* command, const JointMeasurement& measured,
                      ActuatorCommand& out) noexcept;
@@ -90,6 +93,8 @@ class JointLoop {
   double pump_flow_m3_s_ = 0.0;
   std::array<JointData, kMaxJoints> joints_{};
   std::array<double, kMaxJoints> previous_rate_{};
+  int turn_joint_ = -1;
+  std::array<int, 4> reaching_joints_{-1, -1, -1, -1};  ///< BOOM, DIPPER, TELE, EE_PITCH
 
   std::array<int, kNumWheels> wheel_joint_{};  ///< by Limb
   std::array<double, kNumWheels> wheel_sign_{}, wheel_radius_m_{}, latched_angle_rad_{},

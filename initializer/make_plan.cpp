@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "initializer/explained_plan.hpp"
+#include "initializer/found_plan.hpp"
 #include "initializer/paper/paper_search.hpp"
 #include "initializer/plan_search.hpp"
 #include "initializer/pose_check.hpp"
@@ -25,7 +27,27 @@ std::string text_of(const Pose2& pose, const Eigen::Vector2d& map_origin_m) {
   return text;
 }
 
-// What is wrong with the first unusable setting; empty if nothing is.
+Result<StandingPose> standing_at(const PoseCheck& check, const TerrainMap& terrain,
+                                 const Pose2& pose, const std::string& name) {
+  const std::string intro =
+      name + " " + text_of(pose, terrain.map_origin_m()) + " cannot be used: ";
+  if (!std::isfinite(pose.x_m) || !std::isfinite(pose.y_m) || !std::isfinite(pose.yaw_rad)) {
+    return fail(ErrorCode::kBadInput, intro + "its values must be finite numbers");
+  }
+  const Eigen::Vector2d here(pose.x_m, pose.y_m);
+  if (!terrain.contains(here)) return fail(ErrorCode::kBadInput, intro + "it is off the map");
+  if (!terrain.known(here)) {
+    return fail(ErrorCode::kBadInput, intro + "it is on unknown ground");
+  }
+  StandingPose standing = check.stand(pose, PoseCheck::Steering{});
+  if (!standing.ok()) {
+    return fail(ErrorCode::kBadInput, intro + describe(standing, terrain.map_origin_m()));
+  }
+  return standing;
+}
+
+}  // namespace
+
 std::string settings_complaint(const PlanSettings& s) {
   const std::array<std::pair<const char*, double>, 8> positive{
       {{"time_budget_s", s.time_budget_s},
@@ -51,30 +73,17 @@ std::string settings_complaint(const PlanSettings& s) {
   return {};
 }
 
-Result<StandingPose> standing_at(const PoseCheck& check, const TerrainMap& terrain,
-                                 const Pose2& pose, const std::string& name) {
-  const std::string intro =
-      name + " " + text_of(pose, terrain.map_origin_m()) + " cannot be used: ";
-  if (!std::isfinite(pose.x_m) || !std::isfinite(pose.y_m) || !std::isfinite(pose.yaw_rad)) {
-    return fail(ErrorCode::kBadInput, intro + "its values must be finite numbers");
-  }
-  const Eigen::Vector2d here(pose.x_m, pose.y_m);
-  if (!terrain.contains(here)) return fail(ErrorCode::kBadInput, intro + "it is off the map");
-  if (!terrain.known(here)) {
-    return fail(ErrorCode::kBadInput, intro + "it is on unknown ground");
-  }
-  StandingPose standing = check.stand(pose, PoseCheck::Steering{});
-  if (!standing.ok()) {
-    return fail(ErrorCode::kBadInput, intro + describe(standing, terrain.map_origin_m()));
-  }
-  return standing;
-}
-
-}  // namespace
-
 Result<Plan> make_plan(const TerrainMap& terrain, const MachineModel& machine, const Task& task,
                        const PlanSettings& settings,
                        const std::function<void(const PlanProgress&)>& observer) {
+  SearchCensus ignored;
+  return make_plan(terrain, machine, task, settings, observer, ignored);
+}
+
+Result<Plan> make_plan(const TerrainMap& terrain, const MachineModel& machine, const Task& task,
+                       const PlanSettings& settings,
+                       const std::function<void(const PlanProgress&)>& observer,
+                       SearchCensus& turned_down) {
   const double begin_s = thread_cpu_time_s();
   if (std::string complaint = settings_complaint(settings); !complaint.empty()) {
     return fail(ErrorCode::kBadInput, std::move(complaint));
@@ -89,7 +98,28 @@ Result<Plan> make_plan(const TerrainMap& terrain, const MachineModel& machine, c
   if (settings.mode == PlanMode::kPaper) {
     return make_paper_plan(terrain, machine, task, settings, observer, begin_s);
   }
-  return PlanSearch(terrain, machine, task, settings, observer, *check, start->base, begin_s).run();
+  PlanSearch search(terrain, machine, task, settings, observer, *check, start->base, begin_s, {});
+  Result<Plan> plan = search.run();
+  turned_down = search.census();
+  return plan;
+}
+
+Result<FoundPlan> find_plan(const TerrainMap& terrain, const MachineModel& machine,
+                            const Task& task, const PlanSettings& settings, const PoseCheck& check,
+                            SearchAids aids,
+                            const std::function<void(const PlanProgress&)>& observer,
+                            double begin_s) {
+  const auto start = standing_at(check, terrain, task.start, "the start");
+  if (!start) return tl::unexpected<Error>(start.error());
+  if (auto goal = standing_at(check, terrain, task.goal, "the goal"); !goal) {
+    return tl::unexpected<Error>(goal.error());
+  }
+  const BaseCoordinates begin = aids.begin.value_or(start->base);
+  PlanSearch search(terrain, machine, task, settings, observer, check, begin, begin_s,
+                    std::move(aids));
+  auto plan = search.run();
+  if (!plan) return tl::unexpected<Error>(plan.error());
+  return FoundPlan{*std::move(plan), search.paths(), search.tables()};
 }
 
 Result<Eigen::VectorXd> standing_posture(const TerrainMap& terrain, const MachineModel& machine,

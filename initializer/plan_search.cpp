@@ -9,6 +9,7 @@
 #include "initializer/internal/direct_paths.hpp"
 #include "initializer/internal/squared_paths.hpp"
 #include "initializer/shorten_path.hpp"
+#include "initializer/stepping/stance_tables.hpp"
 #include "initializer/timing.hpp"
 #include "initializer/verify_plan.hpp"
 #include "initializer/whole_body.hpp"
@@ -24,6 +25,8 @@ constexpr double kProgressPeriodS = 0.1;   // between two calls of the observer
 constexpr double kBlockRadiusM = 0.5;      // around a pose where a path failed
 constexpr double kBlockYawRad = 0.1;       // 6 degrees
 constexpr std::uint64_t kSeedStride = 0x9E3779B97F4A7C15ULL;  // independent streams per tree
+
+constexpr double kNeedlessLiftM = 0.02;  // least cost of a change of support: none is idle
 
 constexpr int kSliceIterations = 40;     // of one tree before the other kind has its turn
 constexpr int kAlignedRejections = 3;    // then headings are free
@@ -61,7 +64,7 @@ PlanSearch::PlanSearch(const TerrainMap& terrain, const MachineModel& machine, c
                        const PlanSettings& settings,
                        const std::function<void(const PlanProgress&)>& observer,
                        const PoseCheck& check, const BaseCoordinates& standing_at_start,
-                       double begin_s)
+                       double begin_s, SearchAids aids)
     : terrain_(terrain),
       machine_(machine),
       task_(task),
@@ -69,7 +72,8 @@ PlanSearch::PlanSearch(const TerrainMap& terrain, const MachineModel& machine, c
       observer_(observer),
       check_(check),
       standing_at_start_(standing_at_start),
-      begin_s_(begin_s) {
+      begin_s_(begin_s),
+      aids_(std::move(aids)) {
   search_settings_.turning_radius_m = machine.min_turning_radius_m;
   search_settings_.range_m = settings.range_m;
   search_settings_.subnode_spacing_m = settings.subnode_spacing_m;
@@ -96,7 +100,7 @@ int PlanSearch::iterations() const {
 
 bool PlanSearch::out_of_budget() {
   if (observer_ && elapsed_s() - reported_s_ > kProgressPeriodS) report();
-  if (best_ && best_->cost <= kGoodEnough * lower_bound_m_) return true;
+  if (best_ && (aids_.first_will_do || best_->cost <= kGoodEnough * lower_bound_m_)) return true;
   if (settings_.iterations) return iterations() >= *settings_.iterations;
   const double now_s = elapsed_s();
   return now_s >= settings_.time_budget_s ||
@@ -164,16 +168,40 @@ bool PlanSearch::may_step() const {
 }
 
 Result<void> PlanSearch::build_certifier() {
+  if (certifier_) return {};
   CertificateSettings certificate;
-  certificate.lift_cost_m *= settings_.stepping_penalty;
-  certificate.bucket_cost_m *= settings_.stepping_penalty;
+  certificate.lift_cost_m =
+      std::max(settings_.stepping_penalty * certificate.lift_cost_m, kNeedlessLiftM);
+  certificate.bucket_cost_m =
+      std::max(settings_.stepping_penalty * certificate.bucket_cost_m, kNeedlessLiftM);
   certificate.stepping_share *= settings_.stepping_penalty;
-  auto built = Certifier::build(terrain_, machine_, settings_, certificate);
-  if (!built) return tl::unexpected<Error>(built.error());
-  auto motion = SteppingMotion::build(terrain_, machine_, settings_);
+  if (!aids_.tables) {
+    auto tables = StanceTables::build(machine_);
+    if (!tables) return tl::unexpected<Error>(tables.error());
+    aids_.tables = std::make_shared<const StanceTables>(*std::move(tables));
+  }
+  auto motion = SteppingMotion::build(terrain_, machine_, settings_, check_.legs());
   if (!motion) return tl::unexpected<Error>(motion.error());
-  certifier_.emplace(*std::move(built));
+  certifier_.emplace(terrain_, aids_.tables, settings_, certificate);
   motion_.emplace(*std::move(motion));
+  return {};
+}
+
+// Paths that were good before may be good still.
+Result<void> PlanSearch::try_given_paths() {
+  const PoseValidity drivable = [this](const Pose2& pose, double curvature_1_m) {
+    return can_drive(pose, curvature_1_m);
+  };
+  for (const DrivePath& path : aids_.paths) {
+    if (path_is_valid(path, settings_.subnode_spacing_m, drivable)) consider_driving(path);
+    if (best_) return {};
+  }
+  if (!may_step()) return {};
+  for (const DrivePath& path : aids_.paths) {
+    if (auto built = build_certifier(); !built) return built;
+    consider_stepping(path);
+    if (best_) return {};
+  }
   return {};
 }
 
@@ -261,8 +289,11 @@ void PlanSearch::grow_certified_tree() {
 Result<Plan> PlanSearch::run() {
   lower_bound_m_ =
       path_length_m(reeds_shepp_path(task_.start, task_.goal, search_settings_.turning_radius_m));
-  if (auto tried = try_direct_paths(); !tried) return tl::unexpected<Error>(tried.error());
-  while (!out_of_budget()) {
+  if (auto tried = try_given_paths(); !tried) return tl::unexpected<Error>(tried.error());
+  if (!(best_ && aids_.first_will_do)) {
+    if (auto tried = try_direct_paths(); !tried) return tl::unexpected<Error>(tried.error());
+  }
+  while (aids_.grow_trees && !out_of_budget()) {
     if (auto grown = grow(kDriving); !grown) return tl::unexpected<Error>(grown.error());
     if (!certifier_ || out_of_budget()) continue;
     if (auto grown = grow(kStepping); !grown) return tl::unexpected<Error>(grown.error());
@@ -306,7 +337,7 @@ bool PlanSearch::consider_driving(const DrivePath& path) {
     return false;
   }
   plan.min_stability_margin_m = verdict.min_stability_margin_m;
-  return keep(std::move(plan), std::nullopt);
+  return keep(std::move(plan), path, std::nullopt);
 }
 
 bool PlanSearch::consider_stepping(const DrivePath& path) {
@@ -320,7 +351,7 @@ bool PlanSearch::consider_stepping(const DrivePath& path) {
     reject(kStepping, sequence.error().where, sequence.error().why);
     return false;
   }
-  return !plan || keep(*std::move(plan), *std::move(sequence));
+  return !plan || keep(*std::move(plan), path, *std::move(sequence));
 }
 
 bool PlanSearch::consider_sequence(CertifiedSequence sequence) {
@@ -330,7 +361,7 @@ bool PlanSearch::consider_sequence(CertifiedSequence sequence) {
            objection->why);
     return false;
   }
-  return !plan || keep(*std::move(plan), std::move(sequence));
+  return !plan || keep(*std::move(plan), DrivePath(sequence.path), std::move(sequence));
 }
 
 // What keeps a sequence from being a verified plan. No plan is made of one that costs too much.
@@ -353,11 +384,12 @@ std::optional<Objection> PlanSearch::objection_to(const CertifiedSequence& seque
   return std::nullopt;
 }
 
-bool PlanSearch::keep(Plan plan, std::optional<CertifiedSequence> sequence) {
+bool PlanSearch::keep(Plan plan, const DrivePath& path, std::optional<CertifiedSequence> sequence) {
   plan.seed = settings_.seed;
   plan.first_solution_time_s = best_ ? best_->first_solution_time_s : elapsed_s();
   best_ = std::move(plan);
   best_sequence_ = std::move(sequence);
+  paths_.push_back(path);
   improved_s_ = elapsed_s();
   if (observer_) observer_({elapsed_s(), best_->cost, &*best_});
   return true;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "initializer/found_plan.hpp"
 #include "initializer/internal/se2_search.hpp"
 #include "initializer/make_plan.hpp"
 #include "initializer/pose_check.hpp"
@@ -23,7 +24,8 @@ class PlanSearch {
  public:
   PlanSearch(const TerrainMap& terrain, const MachineModel& machine, const Task& task,
              const PlanSettings& settings, const std::function<void(const PlanProgress&)>& observer,
-             const PoseCheck& check, const BaseCoordinates& standing_at_start, double begin_s);
+             const PoseCheck& check, const BaseCoordinates& standing_at_start, double begin_s,
+             SearchAids aids = {});
 
   /// errors  kNoPlan with what blocked it; kBadInput: a machine that cannot step;
   ///         kInternal: OMPL failed
@@ -32,6 +34,12 @@ class PlanSearch {
   /// Of the plan that run() gave, if it steps.
   [[nodiscard]] const std::optional<CertifiedSequence>& sequence() const noexcept {
     return best_sequence_;
+  }
+  /// Of every plan that was the best of its time, the last one's at the end.
+  [[nodiscard]] const std::vector<DrivePath>& paths() const noexcept { return paths_; }
+  /// Null if stepping was never looked at.
+  [[nodiscard]] const std::shared_ptr<const StanceTables>& tables() const noexcept {
+    return aids_.tables;
   }
 
  private:
@@ -61,6 +69,7 @@ class PlanSearch {
 
   [[nodiscard]] Result<void> build_certifier();
   [[nodiscard]] bool may_step() const;
+  [[nodiscard]] Result<void> try_given_paths();
   [[nodiscard]] Result<void> try_direct_paths();
   [[nodiscard]] Result<void> grow(Kind kind);
   void grow_certified_tree();
@@ -70,7 +79,7 @@ class PlanSearch {
   bool consider_sequence(CertifiedSequence sequence);
   [[nodiscard]] std::optional<Objection> objection_to(const CertifiedSequence& sequence,
                                                       std::optional<Plan>& plan) const;
-  bool keep(Plan plan, std::optional<CertifiedSequence> sequence);
+  bool keep(Plan plan, const DrivePath& path, std::optional<CertifiedSequence> sequence);
   void reject(Kind kind, const Pose2& where, const std::string& why);
   [[nodiscard]] Plan finished();
 
@@ -93,6 +102,8 @@ class PlanSearch {
   std::unique_ptr<CertifiedTree> certified_tree_;
   std::uint64_t num_trees_ = 0;
   SearchCensus census_;
+  SearchAids aids_;
+  std::vector<DrivePath> paths_;
 };
 
 }  // namespace wex

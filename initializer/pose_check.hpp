@@ -62,6 +62,9 @@ class PoseCheck {
   [[nodiscard]] static Result<PoseCheck> build(const TerrainMap& terrain,
                                                const MachineModel& machine,
                                                const PlanSettings& settings);
+  /// The same with tables of the machine's legs that were built before.
+  PoseCheck(const TerrainMap& terrain, const MachineModel& machine, const PlanSettings& settings,
+            std::array<LegTable, kNumWheels> legs);
 
   /// Base height, roll and pitch by Algorithm 1: of all candidates that can stand the one with the
   /// lowest cost, so that a demand which is dropped never makes a pose fail. Where legs do not
@@ -97,8 +100,6 @@ class PoseCheck {
     double height_m = 0.0;  ///< under the base origin; NaN where a wheel has no known ground
   };
 
-  PoseCheck(const TerrainMap& terrain, const MachineModel& machine, const PlanSettings& settings,
-            std::array<LegTable, kNumWheels> legs);
   [[nodiscard]] Grounding ground_leg(const Eigen::Isometry3d& T_world_base, int leg,
                                      const LegTable::Steer& steer) const;
   void settle(const Eigen::Isometry3d& T_world_base, int leg, const LegTable::Steer& steer,

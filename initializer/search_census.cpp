@@ -1,11 +1,12 @@
 #include "initializer/search_census.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace wex {
 
-std::string SearchCensus::sentence() const {
+std::vector<std::pair<std::uint64_t, std::string>> SearchCensus::rejections() const {
   std::vector<std::pair<std::uint64_t, std::string>> reasons;
   for (std::size_t i = 1; i < kNumRejections; ++i) {
     if (rejections_[i] > 0)
@@ -18,6 +19,31 @@ std::string SearchCensus::sentence() const {
   if (num_askew_ > 0)
     reasons.emplace_back(num_askew_, "heading askew at what must be stepped over");
   std::sort(reasons.rbegin(), reasons.rend());
+  return reasons;
+}
+
+std::vector<FailedPlace> SearchCensus::failed_places() const {
+  constexpr double kSamePlaceM = 0.5;
+  std::vector<FailedPlace> places;
+  for (const FailedPath& path : failed_paths_) {
+    const auto same = std::find_if(places.begin(), places.end(), [&](const FailedPlace& place) {
+      return place.last.stepping == path.stepping &&
+             std::hypot(place.last.where.x_m - path.where.x_m,
+                        place.last.where.y_m - path.where.y_m) < kSamePlaceM;
+    });
+    if (same == places.end()) {
+      places.push_back({path, 1});
+    } else {
+      *same = {path, same->count + 1};
+    }
+  }
+  std::stable_sort(places.begin(), places.end(),
+                   [](const FailedPlace& a, const FailedPlace& b) { return a.count > b.count; });
+  return places;
+}
+
+std::string SearchCensus::sentence() const {
+  const auto reasons = rejections();
   std::uint64_t num_rejected = 0;
   for (const auto& reason : reasons) num_rejected += reason.first;
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "initializer/pose_check.hpp"
@@ -15,6 +16,12 @@ struct FailedPath {
   Pose2 where;
   std::string why;  ///< part of a sentence
   bool stepping = false;
+};
+
+/// Failures close to each other.
+struct FailedPlace {
+  FailedPath last;
+  int count = 0;
 };
 
 /// Everything that was turned down during one search, for the sentence that says why there is no
@@ -31,6 +38,11 @@ class SearchCensus {
   [[nodiscard]] const std::vector<FailedPath>& failed_paths() const noexcept {
     return failed_paths_;
   }
+  /// The failures gathered by place (within half a metre) and kind, most frequent first.
+  [[nodiscard]] std::vector<FailedPlace> failed_places() const;
+  [[nodiscard]] std::uint64_t num_poses() const noexcept { return num_poses_; }
+  /// Rejected poses by reason, most frequent first; reasons that never applied are left out.
+  [[nodiscard]] std::vector<std::pair<std::uint64_t, std::string>> rejections() const;
   /// "162630 of 273376 poses tried were rejected: ... 56 %, ...; 3 path(s) could not be
   /// followed..."
   [[nodiscard]] std::string sentence() const;

@@ -228,4 +228,16 @@ PlanVerdict verify_plan(const TerrainMap& terrain, const MachineModel& machine, 
   return verdict;
 }
 
+std::vector<std::size_t> unsound_nodes(const TerrainMap& terrain, const MachineModel& machine,
+                                       const Plan& plan, const std::vector<std::size_t>& nodes,
+                                       const PlanSettings& settings) {
+  Verifier verifier(terrain, machine, settings);
+  PlanVerdict verdict;
+  std::vector<std::size_t> unsound;
+  for (const std::size_t i : nodes) {
+    if (verifier.violation(plan.nodes[i], verdict)) unsound.push_back(i);
+  }
+  return unsound;
+}
+
 }  // namespace wex

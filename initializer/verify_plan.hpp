@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "initializer/make_plan.hpp"
 #include "models/excavator/machine_model.hpp"
@@ -25,5 +26,12 @@ struct PlanVerdict {
 /// both ends against the task. Runs on every plan before it is returned.
 [[nodiscard]] PlanVerdict verify_plan(const TerrainMap& terrain, const MachineModel& machine,
                                       const Plan& plan, const PlanSettings& settings = {});
+
+/// Those of some nodes that verify_plan would refuse by themselves, in the same order; what lies
+/// between nodes is not looked at.
+[[nodiscard]] std::vector<std::size_t> unsound_nodes(const TerrainMap& terrain,
+                                                     const MachineModel& machine, const Plan& plan,
+                                                     const std::vector<std::size_t>& nodes,
+                                                     const PlanSettings& settings = {});
 
 }  // namespace wex

@@ -301,16 +301,32 @@ double Electronics::wheel_share(std::int64_t now_ms) const noexcept {
     if (command == nullptr || !command->active[wheel.slot.index]) continue;
     travel_m_s += wheel.way_per_rad_m * command->rate[wheel.slot.index] / kNumWheels;
   }
-  return settings_.travel.share_of(travel_m_s, state_.base[kBasePitch]);
+  return settings_.travel.share_of(travel_m_s, state_.base[kBasePitch], state_.base[kBaseRoll]);
+}
+
+double Electronics::swing_share(std::int64_t now_ms) const noexcept {
+  const ZoneCommand* command = watchdog_.in_force(turn_.zone, now_ms);
+  if (command == nullptr) return 1.0;
+  const double asked = std::abs(command->rate[turn_.index]);
+  const auto of = [this](std::array<double, kMaxZoneJoints> Zone::* what, JointSlot slot) {
+    return (zones_[slot.zone].*what)[slot.index];
+  };
+  const auto pick = [&](std::array<double, kMaxZoneJoints> Zone::* what) {
+    return ReachingJoints{of(what, boom_), of(what, dipper_), of(what, tele_), of(what, ee_pitch_)};
+  };
+  const double limit = settings_.slew.at(pick(&Zone::position), pick(&Zone::rate),
+                                         tilt_of(state_.base[kBasePitch], state_.base[kBaseRoll]));
+  return asked > limit ? limit / asked : 1.0;
 }
 
 void Electronics::act(std::int64_t now_ms) noexcept {
   const bool enabled = automaton_.mode() == MachineMode::kEnabled;
-  const double share = wheel_share(now_ms);
+  const double of_wheels = wheel_share(now_ms), of_swing = swing_share(now_ms);
   for (int z = 0; z < kNumZones; ++z) {
     Zone& zone = zones_[z];
-    const ZoneOutput& output = zone.controller.update(
-        enabled ? watchdog_.in_force(z, now_ms) : nullptr, zone.position, zone.rate, share);
+    const ZoneOutput& output =
+        zone.controller.update(enabled ? watchdog_.in_force(z, now_ms) : nullptr, zone.position,
+                               zone.rate, of_wheels, of_swing);
     for (int i = 0; i < kMaxZoneJoints; ++i) {
       const int joint = slots_[z][i];
       if (joint < 0) continue;

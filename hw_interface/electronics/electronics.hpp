@@ -27,6 +27,7 @@ struct ElectronicsSettings {
   MachineLimitsSettings limits;
   ZoneControllerSettings zones;                            ///< dead_band is taken from the machine
   StoppingSpeed travel;                                    ///< beyond it all wheels get less
+  StoppingSlew slew;                                       ///< beyond it the cabin gets less
   Eigen::Vector2d map_origin_m = Eigen::Vector2d::Zero();  ///< map frame = plant's frame + this
   double neutral_rate = 5e-3;      ///< rad/s or m/s: a bumpless command asks for no more
   int silence_ms = 100;            ///< after that a counter may start anywhere
@@ -115,6 +116,7 @@ class Electronics {
   void follow_automaton(std::int64_t now_ms) noexcept;
   void sense() noexcept;
   [[nodiscard]] double wheel_share(std::int64_t now_ms) const noexcept;
+  [[nodiscard]] double swing_share(std::int64_t now_ms) const noexcept;
   void act(std::int64_t now_ms) noexcept;
 
   struct Wheel {
@@ -124,6 +126,8 @@ class Electronics {
 
   SlotMap slots_;
   std::array<Wheel, kNumWheels> wheels_;
+  JointSlot turn_ = slot_of("TURN"), boom_ = slot_of("BOOM"), dipper_ = slot_of("DIPPER"),
+            tele_ = slot_of("TELE"), ee_pitch_ = slot_of("EE_PITCH");
   Plant* plant_;
   FramePort* port_;
   ElectronicsSettings settings_;

@@ -53,14 +53,15 @@ void ZoneController::update_wheel(int i, bool active, double asked, double posit
 const ZoneOutput& ZoneController::update(const ZoneCommand* command,
                                          const std::array<double, kMaxZoneJoints>& position,
                                          const std::array<double, kMaxZoneJoints>& rate,
-                                         double wheel_share) noexcept {
+                                         double wheel_share, double swing_share) noexcept {
   for (int i = 0; i < kMaxZoneJoints; ++i) {
     const bool active = command != nullptr && command->active[i];
     const double asked = active ? command->rate[i] : 0.0;
     if (roles_[i] == SlotRole::kWheel) {
       update_wheel(i, active, wheel_share * asked, position[i], rate[i]);
     } else if (roles_[i] != SlotRole::kUnused) {
-      update_spool(i, active, asked, rate[i]);
+      const double share = roles_[i] == SlotRole::kSwing ? swing_share : 1.0;
+      update_spool(i, active, share * asked, rate[i]);
     }
   }
   return output_;

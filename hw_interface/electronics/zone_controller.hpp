@@ -42,11 +42,11 @@ class ZoneController {
                  const ZoneControllerSettings& settings = {}) noexcept;
 
   /// command == nullptr: every joint holds. Inactive joints hold. Positions and rates as measured.
-  /// wheel_share: of what is asked of the wheels, so much is given.
+  /// wheel_share, swing_share: of what is asked of the wheels and of the cabin, so much is given.
   const ZoneOutput& update(const ZoneCommand* command,
                            const std::array<double, kMaxZoneJoints>& position,
-                           const std::array<double, kMaxZoneJoints>& rate,
-                           double wheel_share = 1.0) noexcept;
+                           const std::array<double, kMaxZoneJoints>& rate, double wheel_share = 1.0,
+                           double swing_share = 1.0) noexcept;
   /// The spools are neutral (as of the last update).
   [[nodiscard]] bool neutral() const noexcept;
   /// Parking brakes and swing brake, of those that the zone has.

@@ -201,7 +201,9 @@ JointMeasurement SimulatedPlant::measure() const noexcept {
     measured.rate[i] = impl_->data->qvel[impl_->addresses[i].dof];
     measured.effort[i] = impl_->data->actuator_force[i];
   }
-  measured.pitch_rad = base()[kBasePitch];
+  const BaseCoordinates tilted = base();
+  measured.pitch_rad = tilted[kBasePitch];
+  measured.roll_rad = tilted[kBaseRoll];
   return measured;
 }
 

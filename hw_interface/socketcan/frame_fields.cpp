@@ -34,21 +34,18 @@ void FrameWriter::refuse(CodecError error) noexcept {
 }
 
 void FrameWriter::integer(int field, std::int64_t value) noexcept {
-  if (refused_) return;
   const SignalRow& signal = row_->signals[field];
   if (value < signal.raw_min || value > signal.raw_max) return refuse(range_error(signal));
   raw_[field] = value;
 }
 
 void FrameWriter::physical(int field, double value) noexcept {
-  if (refused_) return;
   const auto raw = quantize(row_->signals[field], value);
   if (!raw) return refuse(raw.error());
   raw_[field] = *raw;
 }
 
 void FrameWriter::not_available(int field) noexcept {
-  if (refused_) return;
   raw_[field] = row_->signals[field].not_available;
 }
 

@@ -225,6 +225,7 @@ FrameVerdict HostFeedback::take(const CanFrame& frame, std::int64_t now_ns) noex
 JointMeasurement HostFeedback::measurement() const noexcept {
   JointMeasurement measured;
   measured.pitch_rad = pose_.value.pitch_rad;
+  measured.roll_rad = pose_.value.roll_rad;
   for (int i = 0; i < num_joints_; ++i) {
     const auto [zone, index] = slots_[i];
     const ZonePressure& pressure = pressure_[zone].value;

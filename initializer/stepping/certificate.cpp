@@ -11,15 +11,17 @@
 namespace wex {
 
 struct Certifier::Impl {
-  Impl(const TerrainMap& terrain, StanceTables made, const PlanSettings& plan_settings,
-       const CertificateSettings& certificate_settings)
-      : tables(std::move(made)),
+  Impl(const TerrainMap& terrain, std::shared_ptr<const StanceTables> made,
+       const PlanSettings& plan_settings, const CertificateSettings& certificate_settings)
+      : shared_tables(std::move(made)),
+        tables(*shared_tables),
         ground(terrain),
         check(ground, tables),
         plan(plan_settings),
         settings(certificate_settings) {}
 
-  const StanceTables tables;
+  const std::shared_ptr<const StanceTables> shared_tables;
+  const StanceTables& tables;
   const StanceGround ground;
   const StanceCheck check;
   const PlanSettings plan;
@@ -165,7 +167,9 @@ Result<CertifiedSequence, CertificateFailure> Certifier::Impl::accepted(
   return tl::unexpected<CertificateFailure>(std::move(failure));
 }
 
-Certifier::Certifier(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Certifier::Certifier(const TerrainMap& terrain, std::shared_ptr<const StanceTables> tables,
+                     const PlanSettings& settings, const CertificateSettings& certificate)
+    : impl_(std::make_unique<Impl>(terrain, std::move(tables), settings, certificate)) {}
 Certifier::~Certifier() = default;
 Certifier::Certifier(Certifier&&) noexcept = default;
 
@@ -174,7 +178,8 @@ Result<Certifier> Certifier::build(const TerrainMap& terrain, const MachineModel
                                    const CertificateSettings& certificate) {
   auto tables = StanceTables::build(machine);
   if (!tables) return tl::unexpected<Error>(tables.error());
-  return Certifier(std::make_unique<Impl>(terrain, *std::move(tables), settings, certificate));
+  return Certifier(terrain, std::make_shared<const StanceTables>(*std::move(tables)), settings,
+                   certificate);
 }
 
 Result<CertifiedSequence, CertificateFailure> Certifier::certify(

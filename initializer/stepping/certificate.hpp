@@ -16,6 +16,8 @@
 
 namespace wex {
 
+struct StanceTables;
+
 /// Which limbs carry the machine: the wheels that are not lifted, and a bucket that stands.
 struct Support {
   std::uint8_t lifted = 0;  ///< bit i: wheel i (Limb order) is in the air
@@ -91,6 +93,9 @@ class Certifier {
                                                const MachineModel& machine,
                                                const PlanSettings& settings,
                                                const CertificateSettings& certificate = {});
+  /// The same with tables of the machine that were built before (not null).
+  Certifier(const TerrainMap& terrain, std::shared_ptr<const StanceTables> tables,
+            const PlanSettings& settings, const CertificateSettings& certificate = {});
   ~Certifier();
   Certifier(Certifier&&) noexcept;
 
@@ -116,7 +121,6 @@ class Certifier {
 
  private:
   struct Impl;
-  explicit Certifier(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

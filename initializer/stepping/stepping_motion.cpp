@@ -20,13 +20,20 @@ SteppingMotion::SteppingMotion(SteppingMotion&&) noexcept = default;
 Result<SteppingMotion> SteppingMotion::build(const TerrainMap& terrain, const MachineModel& machine,
                                              const PlanSettings& settings,
                                              const SteppingMotionSettings& motion) {
-  auto placer = WheelPlacer::build(terrain, machine, settings);
-  if (!placer) return tl::unexpected<Error>(placer.error());
+  auto legs = build_leg_tables(machine);
+  if (!legs) return tl::unexpected<Error>(legs.error());
+  return build(terrain, machine, settings, *std::move(legs), motion);
+}
+
+Result<SteppingMotion> SteppingMotion::build(const TerrainMap& terrain, const MachineModel& machine,
+                                             const PlanSettings& settings,
+                                             std::array<LegTable, kNumWheels> legs,
+                                             const SteppingMotionSettings& motion) {
   auto arm = ArmKinematics::build(machine);
   if (!arm) return tl::unexpected<Error>(arm.error());
-  return SteppingMotion(
-      std::make_unique<Impl>(Impl{{terrain, machine, settings, motion, *std::move(placer),
-                                   *std::move(arm), CollisionModel::build(machine)}}));
+  return SteppingMotion(std::make_unique<Impl>(Impl{
+      {terrain, machine, settings, motion, WheelPlacer(terrain, machine, settings, std::move(legs)),
+       *std::move(arm), CollisionModel::build(machine)}}));
 }
 
 Result<std::vector<WholeBodyNode>, MotionFailure> SteppingMotion::nodes(

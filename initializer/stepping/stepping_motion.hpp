@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "initializer/leg_table.hpp"
 #include "initializer/stepping/certificate.hpp"
 #include "models/types/plan.hpp"
 
@@ -43,6 +45,12 @@ class SteppingMotion {
   [[nodiscard]] static Result<SteppingMotion> build(const TerrainMap& terrain,
                                                     const MachineModel& machine,
                                                     const PlanSettings& settings,
+                                                    const SteppingMotionSettings& motion = {});
+  /// The same with tables of the machine's legs that were built before.
+  [[nodiscard]] static Result<SteppingMotion> build(const TerrainMap& terrain,
+                                                    const MachineModel& machine,
+                                                    const PlanSettings& settings,
+                                                    std::array<LegTable, kNumWheels> legs,
                                                     const SteppingMotionSettings& motion = {});
   ~SteppingMotion();
   SteppingMotion(SteppingMotion&&) noexcept;

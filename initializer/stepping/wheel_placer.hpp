@@ -37,6 +37,9 @@ class WheelPlacer {
   [[nodiscard]] static Result<WheelPlacer> build(const TerrainMap& terrain,
                                                  const MachineModel& machine,
                                                  const PlanSettings& settings);
+  /// The same with tables of the machine's legs that were built before.
+  WheelPlacer(const TerrainMap& terrain, const MachineModel& machine, const PlanSettings& settings,
+              std::array<LegTable, kNumWheels> legs);
 
   /// Legs at a base pose, wheels of `lifted` at the given hip flexion, the others resting.
   ///   guess  hip flexion of a similar pose
@@ -60,8 +63,6 @@ class WheelPlacer {
   [[nodiscard]] double mass_kg() const noexcept { return mass_kg_; }
 
  private:
-  WheelPlacer(const TerrainMap& terrain, const MachineModel& machine, const PlanSettings& settings,
-              std::array<LegTable, kNumWheels> legs);
   [[nodiscard]] const char* rest(const Eigen::Isometry3d& T_world_base, std::size_t wheel,
                                  const LegTable::Steer& steer, double& hfe_rad) const;
   [[nodiscard]] double gap_m(const Eigen::Isometry3d& T_world_base, std::size_t wheel,

@@ -20,9 +20,10 @@ double TrackingCost::value(const std::vector<NodeVector>& nodes,
                            const std::vector<NodeVector>& reference) const {
   double sum = 0.0;
   for (std::size_t k = 1; k < nodes.size(); ++k) {
-    sum += weights_.dot((nodes[k] - reference[k]).cwiseAbs2());
+    const double deviation = weights_.dot((nodes[k] - reference[k]).cwiseAbs2());
+    sum += duration_s(k + 1 == nodes.size()) * deviation;
   }
-  return 0.5 * dt_s_ * sum;
+  return 0.5 * sum;
 }
 
 void TrackingCost::add_gradient(const std::vector<NodeVector>& nodes,
@@ -31,7 +32,7 @@ void TrackingCost::add_gradient(const std::vector<NodeVector>& nodes,
   const Eigen::Index n = weights_.size();
   for (std::size_t k = 1; k < nodes.size(); ++k) {
     gradient.segment(static_cast<Eigen::Index>(k - 1) * n, n) +=
-        dt_s_ * weights_.cwiseProduct(nodes[k] - reference[k]);
+        duration_s(k + 1 == nodes.size()) * weights_.cwiseProduct(nodes[k] - reference[k]);
   }
 }
 

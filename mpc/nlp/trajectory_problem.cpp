@@ -21,7 +21,8 @@ double violation(double value, double lower, double upper) {
 
 TrajectoryProblem::TrajectoryProblem(TrajectorySetup setup)
     : setup_(std::move(setup)),
-      tracking_(expand(setup_.tracking, *setup_.machine, setup_.layout), setup_.dt_s),
+      tracking_(expand(setup_.tracking, *setup_.machine, setup_.layout), setup_.dt_s,
+                setup_.tracking_tail_s),
       motion_(expand(setup_.rates, *setup_.machine, setup_.layout),
               expand(setup_.accelerations, *setup_.machine, setup_.layout), setup_.dt_s,
               setup_.end_at_rest),
@@ -127,7 +128,7 @@ void TrajectoryProblem::build_hessian() {
   for (int k = 1; k <= layout.num_nodes; ++k) {
     for (int i = 0; i < layout.node_size(); ++i) {
       for (int lag = 0; lag <= std::min(2, layout.num_nodes - k); ++lag) {
-        const double tracking = lag == 0 ? tracking_.hessian(i) : 0.0;
+        const double tracking = lag == 0 ? tracking_.hessian(i, k == layout.num_nodes) : 0.0;
         add(layout.node_offset(k + lag) + i, layout.node_offset(k) + i,
             tracking + motion_.hessian(i, k, lag, layout.num_nodes));
       }

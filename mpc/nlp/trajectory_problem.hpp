@@ -32,6 +32,7 @@ struct TrajectorySetup {
   bool fix_goal = false;          ///< x, y, yaw of the last node as in the reference
   bool end_at_rest = false;
   CoordinateWeights tracking, rates, accelerations;
+  double tracking_tail_s = 0.0;  ///< the last node's deviation counts for so much longer
   std::vector<std::pair<std::shared_ptr<const NodeConstraint>, Softness>> node_constraints;
   std::vector<std::shared_ptr<const IntervalConstraint>> interval_constraints;
 };

@@ -1,7 +1,7 @@
-// A drive over a real bus whose clock waits for nobody. Inside User-Mode Linux planner, control
-// loop and simulated machine share one core, of which the kernel takes 50 ms away whenever
-// real-time programs used it up for a second: the machine may hold then, and the drive may be given
-// up. What must not happen is judged by the machine's own log.
+// A drive over a real bus whose clock waits for nobody, judged by the machine's own log. Inside
+// User-Mode Linux planner, control loop and simulated machine share one core, of which the kernel
+// below takes 50 ms away whenever it was used up for a second (while the plan is made): the machine
+// may hold then, for a moment.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -44,8 +44,7 @@ TEST(CanRealTime, DrivesAndStopsWithoutAFault) {
               report["bus"]["false_holds"].get<int>(), report["goal_error_m"].get<double>());
   EXPECT_EQ(report["bus"]["pace"], "real time");
   EXPECT_EQ(report["bus"]["faults"], 0) << report["bus"]["cause"];
-  // Given up after so many holds that the time ran out: safe, but no drive.
-  EXPECT_TRUE(code == 0 || report["bus"]["false_holds"].get<int>() > 5) << host.output();
+  EXPECT_EQ(code, 0) << host.output();
 
   const MachineLogFile truth(log);
   EXPECT_FALSE(truth.ever("fault"));
@@ -55,7 +54,6 @@ TEST(CanRealTime, DrivesAndStopsWithoutAFault) {
   EXPECT_EQ(truth.text("brakes", last), "1");
   EXPECT_LE(truth.ms_until_zero("moving", truth.last_accepted(last), last), 150.0);
   EXPECT_LE(truth.ms_until_zero("travelling", truth.last_accepted(last), last), 150.0);
-  if (code != 0) return;
   EXPECT_NEAR(truth.number("base_x", last), 12.0, 0.3);
   EXPECT_NEAR(truth.number("base_y", last), 8.2, 0.3);
 }

@@ -79,6 +79,37 @@ TEST_F(JointLoopTest, KeepsRateAndAccelerationLimits) {
   EXPECT_LE(measured_.position[hip], limits.upper);
 }
 
+TEST_F(JointLoopTest, SlewsNoFasterThanCanBeStoppedWithTheArmWhereItIs) {
+  const int turn = joint("TURN"), dipper = joint("DIPPER");
+  const StoppingSlew slew;
+  const auto limit = [&] {
+    return 0.97 *
+           slew.at(ArmReach::of({measured_.position[joint("BOOM")], measured_.position[dipper],
+                                 measured_.position[joint("TELE")],
+                                 measured_.position[joint("EE_PITCH")]}),
+                   tilt_of(measured_.pitch_rad, measured_.roll_rad));
+  };
+  for (const double asked : {0.8, -0.8}) {
+    command_.rate[turn] = asked;
+    const double rate = run(&command_, 3.0).rate[turn];
+    EXPECT_NEAR(rate, std::copysign(limit(), asked), 1e-9);
+  }
+  command_.rate[turn] = 0.8;
+  run(&command_, 3.0);
+  const double before = limit();
+  measured_.roll_rad = 0.2;
+  EXPECT_NEAR(tick(&command_).rate[turn], limit(), 1e-9) << "at once, not by the ramp";
+  command_.rate[dipper] = 0.3;
+  run(&command_, 1.5);
+  EXPECT_LT(measured_.rate[turn], limit() - 0.01) << "the arm goes out";
+  command_.rate[dipper] = 0.0;
+  const double further_out = run(&command_, 3.0).rate[turn];
+  EXPECT_NEAR(further_out, limit(), 1e-9);
+  EXPECT_LT(further_out, 0.7 * before);
+  command_.rate[turn] = 0.05;
+  EXPECT_NEAR(run(&command_, 1.0).rate[turn], 0.05, 1e-9) << "slower is left alone";
+}
+
 TEST_F(JointLoopTest, ReachesFullRateAndFeedForwardNeedsNoError) {
   const int steer = joint("LF_STEER");
   command_.rate[steer] = 0.1;
@@ -197,6 +228,10 @@ TEST_F(JointLoopTest, TravelsNoFasterThanCanBeStoppedInTimeOnThisSlope) {
           << pitch_rad << " " << sign;
     }
   }
+  measured_.pitch_rad = 0.0;
+  measured_.roll_rad = -0.35;
+  EXPECT_NEAR(-run(&command_, 4.0).rate[wheel(0)] * machine().legs[0].radius_m,
+              margin * allowed.at(0.0, 0.35), 1e-3);
 }
 
 TEST_F(JointLoopTest, SlowingDownOnASlopeKeepsTheCurve) {
@@ -206,19 +241,6 @@ TEST_F(JointLoopTest, SlowingDownOnASlopeKeepsTheCurve) {
   const ActuatorCommand out = run(&command_, 4.0);
   EXPECT_LT(out.rate[wheel(1)], 0.6);
   EXPECT_NEAR(out.rate[wheel(0)] / out.rate[wheel(1)], asked[0] / asked[1], 1e-3);
-}
-
-TEST(StoppingSpeed, FallsWithTheDescentAndIsNeverMoreThanOnLevelGround) {
-  const StoppingSpeed allowed;
-  EXPECT_EQ(allowed.at(-0.3), allowed.most_m_s);
-  EXPECT_EQ(allowed.at(0.0), allowed.most_m_s);
-  EXPECT_NEAR(allowed.at(0.3), allowed.level_m_s - allowed.per_grade_m_s * std::sin(0.3), 1e-12);
-  EXPECT_EQ(allowed.at(0.6), allowed.least_m_s);
-  EXPECT_EQ(allowed.at(std::nan("")), allowed.least_m_s);
-  EXPECT_EQ(allowed.share_of(0.1, 0.3), 1.0);
-  EXPECT_NEAR(allowed.share_of(1.0, 0.3), allowed.at(0.3), 1e-12);
-  EXPECT_NEAR(allowed.share_of(-1.0, 0.3), allowed.most_m_s, 1e-12) << "backwards is uphill here";
-  EXPECT_NEAR(allowed.share_of(-1.0, -0.3), allowed.at(0.3), 1e-12);
 }
 
 }  // namespace

@@ -52,6 +52,20 @@ TEST(SearchCensus, TellsOfPathsThatFailedAndWhyTheLastDid) {
   EXPECT_EQ(census.failed_paths().front().where.x_m, 1.0);
 }
 
+TEST(SearchCensus, GathersFailuresByPlaceAndKind) {
+  SearchCensus census;
+  census.add({{0.0, 0.0, 0.0}, "once", true});
+  census.add({{5.0, 0.0, 0.0}, "first", true});
+  census.add({{5.3, 0.0, 1.0}, "second", true});
+  census.add({{5.0, 0.0, 0.0}, "on four wheels", false});
+  const auto places = census.failed_places();
+  ASSERT_EQ(places.size(), 3U);
+  EXPECT_EQ(places[0].count, 2);
+  EXPECT_EQ(places[0].last.why, "second");
+  EXPECT_EQ(places[1].last.why, "once");
+  EXPECT_FALSE(places[2].last.stepping);
+}
+
 TEST(SearchCensus, NothingTriedIsSaidToo) {
   EXPECT_EQ(SearchCensus{}.sentence(), "0 of 0 poses tried were rejected");
 }

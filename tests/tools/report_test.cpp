@@ -127,6 +127,34 @@ TEST_F(Report, EveryFieldIsInTheReadme) {
   }
 }
 
+TEST_F(Report, StepsAreCounted) {
+  std::vector<WholeBodyNode>& nodes = report_.plan->nodes;
+  nodes.push_back(nodes.back());
+  nodes[1].contacts = {false, true, true, true, true};
+  nodes[2].t_s = 2.0;
+  const auto json = nlohmann::json::parse(result_json(report_));
+  EXPECT_EQ(json["plan"]["wheel_lifts"]["LF"], 1);
+  EXPECT_EQ(json["plan"]["wheel_lifts"]["RH"], 0);
+  EXPECT_EQ(json["plan"]["bucket_supports"], 1);
+  EXPECT_THAT(summary_table(report_), HasSubstr("1 wheels lifted, bucket down 1 times"));
+}
+
+TEST_F(Report, ASearchWithoutAPlanIsCountedInTheMapFrame) {
+  report_.plan.reset();
+  report_.map_origin_m = {100.0, 200.0};
+  report_.search.emplace();
+  report_.search->count_pose();
+  report_.search->count(Rejection::kBelly);
+  report_.search->add({{1.0, 2.0, 0.5}, "wheel LF would stand too close to an edge", true});
+  const auto json = nlohmann::json::parse(result_json(report_))["search"];
+  EXPECT_EQ(json["poses"], 1);
+  EXPECT_EQ(json["rejected_poses"][describe(Rejection::kBelly)], 1);
+  EXPECT_EQ(json["failed_paths"], 1);
+  ASSERT_EQ(json["failed_places"].size(), 1u);
+  EXPECT_EQ(json["failed_places"][0]["where"], nlohmann::json({101.0, 202.0, 0.5}));
+  EXPECT_EQ(json["failed_places"][0]["last_reason"], "wheel LF would stand too close to an edge");
+}
+
 TEST_F(Report, PlannedCsvHasTheColumnsTheRateAndBothEnds) {
   const auto lines = split(planned_motion_csv(machine_, names_, nodes(), {100.0, 200.0}), '\n');
   const auto columns = split(lines[0], ',');
@@ -172,6 +200,18 @@ TEST_F(Report, PicturesAreDrawn) {
   ASSERT_TRUE(draw_timeline(report_, file).has_value());
   EXPECT_THAT(test::read_file(file), ::testing::StartsWith("\x89PNG"));
   std::filesystem::remove(file);
+  report_.drive.reset();
+  report_.plan->nodes.back().contacts = {false, true, true, true, true};
+  report_.search.emplace();
+  report_.search->add({{1.0, 2.0, 0.5}, "wheel LF would stand too close to an edge", true});
+  ASSERT_TRUE(draw_overview(report_, terrain, machine_, file).has_value());
+  EXPECT_THAT(test::read_file(file), ::testing::StartsWith("\x89PNG"));
+  ASSERT_TRUE(draw_plan_timeline(*report_.plan, machine_, "steps", file).has_value());
+  EXPECT_THAT(test::read_file(file), ::testing::StartsWith("\x89PNG"));
+  std::filesystem::remove(file);
+}
+
+TEST_F(Report, APictureThatCannotBeWrittenNamesItsFile) {
   const auto refused = draw_timeline(report_, "/proc/wex/timeline.png");
   ASSERT_FALSE(refused.has_value());
   EXPECT_THAT(refused.error().message, HasSubstr("/proc/wex/timeline.png"));

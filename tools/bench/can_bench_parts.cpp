@@ -87,6 +87,13 @@ std::vector<CanBenchPart> can_bench_parts(const CanBenchSetting& setting) {
               parts.tests() + "/socketcan/codec_oracle", full ? "200000" : "50000"},
              {},
              900});
+  parts.add({"T1",
+             "time to pack, unpack, encode, decode a frame, longest of all messages",
+             "printed",
+             CanBenchOutput::kScript,
+             {parts.tests() + "/socketcan/codec_times"},
+             {},
+             60});
   parts.add("T2", "every signal at and beyond its ends, NaN, infinities", "0 wraps",
             "socketcan/codec_range_test");
   parts.add("T3", "a million random frames into the decoder", "none accepted beyond chance",

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <optional>
 
+#include "models/types/contact_schedule.hpp"
 #include "tools/bench/initializer_bench_cells.hpp"
 #include "tools/bench/initializer_bench_table.hpp"
 #include "tools/check/plan_checker.hpp"
@@ -20,16 +21,6 @@ struct Work {
   const InitializerCell* cell = nullptr;
   std::uint64_t seed = 0;
 };
-
-int num_lifts(const Plan& plan) {
-  int lifts = 0;
-  for (std::size_t k = 1; k < plan.nodes.size(); ++k) {
-    for (std::size_t limb = 0; limb < kNumWheels; ++limb) {
-      lifts += plan.nodes[k - 1].contacts[limb] && !plan.nodes[k].contacts[limb];
-    }
-  }
-  return lifts;
-}
 
 std::optional<std::string> rejected(const MachineModel& machine, const Raster& raster,
                                     const Plan& plan) {
@@ -81,7 +72,7 @@ InitializerRow planned(const InitializerBenchOptions& options, const MachineMode
   row.length_m = plan->path_length_m;
   row.duration_s = plan->nodes.back().t_s;
   row.margin_m = plan->min_stability_margin_m;
-  row.lifts = num_lifts(*plan);
+  row.lifts = num_wheel_lifts(plan->nodes);
   const auto why_not_last = rejected(machine, raster, *plan);
   const auto why_not_first = first ? rejected(machine, raster, *first) : why_not_last;
   row.accepted = !why_not_last;

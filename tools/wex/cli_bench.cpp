@@ -5,9 +5,11 @@
 #include "tools/bench/kinematics_bench.hpp"
 #include "tools/bench/mpc_bench.hpp"
 #include "tools/bench/terrain_bench.hpp"
+#include "tools/wex/bridge_bench_picture.hpp"
 #include "tools/wex/cli_options.hpp"
 #include "tools/wex/initializer_bench_picture.hpp"
 #include "tools/wex/options.hpp"
+#include "tools/wex/output_folder.hpp"
 
 namespace wex::app {
 namespace {
@@ -48,6 +50,51 @@ void add_initializer_bench(CLI::App& bench, InitializerBenchOptions& options) {
   add_plan_settings(command, options.plan);
 }
 
+void add_bridge_bench(CLI::App& bench, BridgeBenchOptions& options) {
+  CLI::App& command = *bench.add_subcommand(
+      "bridge", "Plans over a gap with a narrow bridge, without and with the stepping penalty");
+  command.add_option("--seeds", options.seeds, "Seeds")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  command.add_option("--stepping-penalty", options.stepping_penalty, "Of the plans that have one")
+      ->check(CLI::Range(0.001, 1000.0))
+      ->type_name("F")
+      ->capture_default_str();
+  command.add_option("--time-budget", options.time_budget_s, "CPU seconds per plan")
+      ->check(CLI::Range(0.01, 3600.0))
+      ->type_name("S")
+      ->capture_default_str();
+  command.add_option("--out", options.out, "Folder for the plots of the contact schedules")
+      ->type_name("DIR")
+      ->capture_default_str();
+}
+
+int bridge_bench_command(const BridgeBenchOptions& options, std::ostream& out, std::ostream& err) {
+  const Result<OutputFolder> folder = OutputFolder::open(options.out);
+  if (!folder) return refuse(err, folder.error());
+  const Result<BridgeBenchOutcome> outcome = bench_bridge(options, out);
+  if (!outcome) return refuse(err, outcome.error());
+  if (const auto drawn = draw_bridge_bench(*outcome, options.out); !drawn) {
+    return refuse(err, drawn.error());
+  }
+  return outcome->holds ? 0 : 5;
+}
+
+void add_replan_bench(CLI::App& bench, ReplanBenchOptions& options) {
+  CLI::App& command = *bench.add_subcommand(
+      "replan", "Planning again after 10 m2 of ground changed, beside planning from scratch");
+  command.add_option("--seeds", options.seeds, "Seeds per terrain")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  command.add_flag("--verbose", options.verbose, "A line for every change");
+  command.add_option("--time-budget", options.plan.time_budget_s, "CPU seconds per plan")
+      ->check(CLI::Range(0.01, 3600.0))
+      ->type_name("S")
+      ->capture_default_str();
+}
+
 int initializer_bench_command(const InitializerBenchOptions& options, std::ostream& out,
                               std::ostream& err) {
   const Result<InitializerBenchOutcome> outcome = bench_initializer(options, out, err);
@@ -78,12 +125,14 @@ void add_bench(CLI::App& app, BenchOptions& options) {
       ->type_name("DIR")
       ->capture_default_str();
   add_initializer_bench(command, options.initializer);
+  add_bridge_bench(command, options.bridge);
   CLI::App& algorithm2 = *command.add_subcommand(
       "algorithm2", "Checks per second of the paper's Algorithm 2, beside the plain loop");
   algorithm2.add_option("--repeats", options.algorithm2.repeats, "Repeats of each")
       ->check(CLI::Range(1, 1000))
       ->type_name("N")
       ->capture_default_str();
+  add_replan_bench(command, options.replan);
   CLI::App& roadmaps =
       *command.add_subcommand("roadmap", "Building and loading of limb roadmaps, arm motions");
   roadmaps.add_option("--repeats", options.roadmap.repeats, "Repeats of each")
@@ -132,8 +181,13 @@ int bench_command(const CLI::App& command, const BenchOptions& options, std::ost
   if (name == "kinematics") return bench_kinematics();
   if (name == "mpc") return bench_mpc();
   if (name == "initializer") return initializer_bench_command(options.initializer, out, err);
+  if (name == "bridge") return bridge_bench_command(options.bridge, out, err);
   if (name == "algorithm2") {
     const Result<void> done = bench_algorithm2(options.algorithm2, out);
+    return done ? 0 : refuse(err, done.error());
+  }
+  if (name == "replan") {
+    const Result<void> done = bench_replan(options.replan, out);
     return done ? 0 : refuse(err, done.error());
   }
   if (name == "roadmap") {

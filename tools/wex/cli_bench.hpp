@@ -4,9 +4,11 @@
 #include <ostream>
 
 #include "tools/bench/algorithm2_bench.hpp"
+#include "tools/bench/bridge_bench.hpp"
 #include "tools/bench/can_bench.hpp"
 #include "tools/bench/drive_bench.hpp"
 #include "tools/bench/initializer_bench.hpp"
+#include "tools/bench/replan_bench.hpp"
 #include "tools/bench/roadmap_bench.hpp"
 
 namespace wex::app {
@@ -16,8 +18,10 @@ struct BenchOptions {
   DriveBenchOptions drive;
   CanBenchOptions can;
   InitializerBenchOptions initializer;
+  ReplanBenchOptions replan;
   RoadmapBenchOptions roadmap;
   Algorithm2BenchOptions algorithm2;
+  BridgeBenchOptions bridge;
 };
 
 /// Adds `bench` and its subcommands.

@@ -107,7 +107,7 @@ Result<void> run_machine(const MachineOptions& options, std::ostream& out) {
       << (options.lock_step ? "lock step" : "real time") << std::endl;
   {
     std::optional<RealTimePriority> priority;
-    if (!options.lock_step) priority.emplace();
+    if (!options.lock_step) priority.emplace(kSimulationPriority);
     runner.run(stop_requested);
   }
   out << summary(**electronics, runner.now_ms()) << std::flush;

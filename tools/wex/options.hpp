@@ -28,7 +28,7 @@ struct RunOptions {
   std::optional<double> solve_delay_s;  ///< empty: measured thread CPU time
   std::string machine = "m545";
   double time_budget_s = 4.0;
-  PlanSettings planning;  ///< but for seed, iterations and budget, which stand above
+  PlanSettings planning;      ///< but for seed, iterations and budget, which stand above
   int frames = 12;            ///< off-screen pictures of the drive (simulation only)
   std::string can_interface;  ///< empty: the simulation within the process
   CanPace can_pace = CanPace::kAsAnnounced;

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "models/types/contact_schedule.hpp"
 #include "tools/wex/ground_picture.hpp"
+#include "tools/wex/stepping_marks.hpp"
 
 namespace wex::app {
 namespace {
@@ -14,7 +16,10 @@ using Points = std::vector<Eigen::Vector2d>;
 constexpr Color kBlack{0.0, 0.0, 0.0}, kWhite{1.0, 1.0, 1.0}, kGrey{0.35, 0.35, 0.35};
 constexpr Color kPlanned{0.35, 0.65, 1.0}, kRefined{0.0, 0.0, 0.0}, kDriven{0.85, 0.05, 0.45};
 constexpr Color kStart{0.05, 0.50, 0.15}, kGoal{0.80, 0.35, 0.00};
+constexpr Color kSteppingBase{1.0, 0.62, 0.10}, kLifted{0.85, 0.25, 0.0}, kBucket{0.55, 0.1, 0.6};
+constexpr Color kTrack{0.15, 0.15, 0.15, 0.65}, kFailed{0.75, 0.0, 0.15};
 constexpr double kText = 13.0;
+constexpr std::size_t kMaxFailedPlaces = 6;  // named; the others are drawn without a number
 
 Points base_path(const std::vector<WholeBodyNode>& nodes) {
   Points path;
@@ -60,7 +65,13 @@ class Overview {
         scale_px_m_(scale(terrain.elevation(), window_)),
         box_{kLeft, kTop, width_m() * scale_px_m_, height_m() * scale_px_m_},
         canvas_(static_cast<int>(kLeft + box_.width + kRight),
-                static_cast<int>(kTop + std::max(box_.height, kLegendHeight) + kBottom)) {}
+                static_cast<int>(kTop + std::max(box_.height, kLegendHeight) + kBottom +
+                                 failures_height(report))) {
+    if (report.plan && !report.drive && num_wheel_lifts(report.plan->nodes) > 0) {
+      marks_ = stepping_marks(machine, report.plan->nodes);
+    }
+    if (report.search) failed_ = report.search->failed_places();
+  }
 
   Result<void> draw(const std::filesystem::path& file) {
     draw_title();
@@ -71,18 +82,27 @@ class Overview {
     draw_paths();
     draw_machine_outline(start_, kStart);
     draw_machine_outline(goal_, kGoal);
+    draw_failures();
     draw_arrow(start_, kStart, "start");
     draw_arrow(goal_, kGoal, "goal");
     draw_scale_bar();
     canvas_.unclip();
     draw_axes();
     draw_legend();
+    list_failures();
     return canvas_.write_png(file);
   }
 
  private:
   static constexpr double kLeft = 96.0, kTop = 44.0, kRight = 250.0, kBottom = 58.0;
   static constexpr double kLegendHeight = 420.0;
+  static constexpr double kLine = 20.0;
+
+  static double failures_height(const RunReport& report) {
+    if (!report.search) return 0.0;
+    return kLine * (2.0 + static_cast<double>(
+                              std::min(report.search->failed_places().size(), kMaxFailedPlaces)));
+  }
 
   Pose2 local(const Pose2& pose) const { return local_pose(pose, report_.map_origin_m); }
   static Pose2 local_pose(const Pose2& pose, const Eigen::Vector2d& origin) {
@@ -116,6 +136,11 @@ class Overview {
     };
     if (report_.plan) append(base_path(report_.plan->nodes));
     if (report_.drive) append(driven_path(report_.drive->samples));
+    if (report_.search) {
+      for (const FailedPath& path : report_.search->failed_paths()) {
+        points.emplace_back(path.where.x_m, path.where.y_m);
+      }
+    }
     return points;
   }
 
@@ -140,18 +165,93 @@ class Overview {
       for (int i = 0; i < kNumWheels; ++i) {
         Points track;
         for (const DriveSample& s : report_.drive->samples) track.push_back(s.wheel_m[i]);
-        canvas_.line(px(track), {{0.15, 0.15, 0.15, 0.65}, 1.3});
+        canvas_.line(px(track), {kTrack, 1.3});
       }
     }
     if (report_.plan) {
       canvas_.line(px(base_path(report_.plan->nodes)), {kWhite, 9.5});
       canvas_.line(px(base_path(report_.plan->nodes)), {kPlanned, 7.5});
     }
+    if (marks_) draw_steps();
     if (report_.drive) {
       canvas_.line(px(driven_path(report_.drive->samples)), {kDriven, 3.0});
     }
     if (report_.refined) {
       canvas_.line(px(base_path(report_.refined->nodes)), {kRefined, 1.2, 4.0});
+    }
+  }
+
+  void draw_steps() {
+    for (const TrackPiece& piece : marks_->base) {
+      if (piece.lifted) canvas_.line(px(piece.points), {kSteppingBase, 7.5});
+    }
+    for (const auto& wheel : marks_->wheels) {
+      for (const TrackPiece& piece : wheel) {
+        canvas_.line(px(piece.points), piece.lifted ? kLiftedStroke : Stroke{kTrack, 1.3});
+      }
+    }
+    for (const Eigen::Vector2d& p : marks_->lift_offs) foothold(px(p), false);
+    for (const Eigen::Vector2d& p : marks_->touch_downs) foothold(px(p), true);
+    for (const Eigen::Vector2d& p : marks_->bucket_points) bucket(px(p));
+  }
+
+  void foothold(const Eigen::Vector2d& at, bool filled) {
+    constexpr double kSize = 8.0;
+    const Box box{at.x() - 0.5 * kSize, at.y() - 0.5 * kSize, kSize, kSize};
+    canvas_.fill(box, filled ? kLifted : kWhite);
+    canvas_.outline(box, {kLifted, 1.5});
+  }
+
+  void bucket(const Eigen::Vector2d& at) {
+    constexpr double kSize = 8.0;
+    const auto diamond = [&](double size) {
+      return Points{at + Eigen::Vector2d(size, 0.0), at + Eigen::Vector2d(0.0, size),
+                    at - Eigen::Vector2d(size, 0.0), at - Eigen::Vector2d(0.0, size)};
+    };
+    canvas_.polygon(diamond(kSize + 1.5), kWhite);
+    canvas_.polygon(diamond(kSize), kBucket);
+  }
+
+  void cross(const Eigen::Vector2d& at, bool stepping) {
+    constexpr double kSize = 8.0;
+    for (const double sign : {-1.0, 1.0}) {
+      const Eigen::Vector2d arm(kSize, sign * kSize);
+      canvas_.line({at - arm, at + arm}, {kWhite, 5.5});
+      canvas_.line({at - arm, at + arm}, {stepping ? kFailed : kPlanned, 3.0});
+    }
+  }
+
+  /// Where paths that the search found could not be followed.
+  void draw_failures() {
+    for (std::size_t k = failed_.size(); k-- > 0;) {
+      const Eigen::Vector2d at =
+          px(Eigen::Vector2d(failed_[k].last.where.x_m, failed_[k].last.where.y_m));
+      cross(at, failed_[k].last.stepping);
+      if (k < kMaxFailedPlaces) {
+        halo_text(at + Eigen::Vector2d(0.0, -13.0), std::to_string(k + 1), kFailed);
+      }
+    }
+  }
+
+  /// What was turned down, below the map.
+  void list_failures() {
+    if (!report_.search) return;
+    double y = kTop + std::max(box_.height, kLegendHeight) + kBottom + 10.0;
+    const auto line = [&](const std::string& text) {
+      canvas_.text({20.0, y}, text, kText);
+      y += kLine;
+    };
+    std::string poses = "rejected of " + std::to_string(report_.search->num_poses()) + " poses: ";
+    std::size_t named = 0;
+    for (const auto& [count, reason] : report_.search->rejections()) {
+      if (named == 4) break;
+      poses += (named++ > 0 ? ", " : "") + reason + " " + std::to_string(count);
+    }
+    line(named > 0 ? poses : "no pose was rejected");
+    for (std::size_t k = 0; k < std::min(failed_.size(), kMaxFailedPlaces); ++k) {
+      line(std::to_string(k + 1) + "  " + std::to_string(failed_[k].count) +
+           (failed_[k].last.stepping ? " stepping" : " driving") +
+           " path(s) died here: " + failed_[k].last.why);
     }
   }
 
@@ -260,8 +360,27 @@ class Overview {
     if (report_.refined) entry("refined path", stroke({kRefined, 1.2, 4.0}));
     if (report_.drive) {
       entry("driven path", stroke({kDriven, 3.0}));
-      entry("wheel tracks", stroke({{0.15, 0.15, 0.15, 0.65}, 1.3}));
+      entry("wheel tracks", stroke({kTrack, 1.3}));
     }
+    if (marks_) {
+      entry("base, with wheels lifted", stroke({kSteppingBase, 7.5}));
+      entry("wheel tracks", stroke({kTrack, 1.3}));
+      entry("wheel in the air", stroke(kLiftedStroke));
+      entry("lifted off, put down", [this, x](double at) {
+        foothold({x + 8.0, at}, false);
+        foothold({x + 24.0, at}, true);
+      });
+      entry("bucket put down", [this, x](double at) { bucket({x + 16.0, at}); });
+    }
+    const auto failed = [&](bool stepping, const char* text) {
+      if (std::none_of(failed_.begin(), failed_.end(),
+                       [&](const FailedPlace& place) { return place.last.stepping == stepping; })) {
+        return;
+      }
+      entry(text, [this, x, stepping](double at) { cross({x + 16.0, at}, stepping); });
+    };
+    failed(true, "no way on, stepping");
+    failed(false, "no way on, driving");
     const auto patch = [&](const Color& c) {
       return [this, x, c](double at) {
         canvas_.fill({x + 4.0, at - 8.0, 24.0, 16.0}, c);
@@ -296,6 +415,9 @@ class Overview {
   const RunReport& report_;
   const TerrainMap& terrain_;
   const MachineModel& machine_;
+  static constexpr Stroke kLiftedStroke{kLifted, 1.8, 5.0};
+  std::optional<SteppingMarks> marks_;
+  std::vector<FailedPlace> failed_;
   Pose2 start_, goal_;
   MapWindow window_;
   double scale_px_m_;

@@ -9,7 +9,9 @@
 namespace wex::app {
 
 /// overview.png: the ground from above (hillshade, height tint, contour lines, untraversable cells)
-/// with start, goal, the planned, refined and driven path and the wheel tracks.
+/// with start, goal, the planned, refined and driven path and the wheel tracks; of a plan that
+/// steps its footholds, lifted stretches and bucket points; of a search without a plan the places
+/// where its paths died, and why.
 ///   errors  kBadInput if the file cannot be written
 [[nodiscard]] Result<void> draw_overview(const RunReport& report, const TerrainMap& terrain,
                                          const MachineModel& machine,

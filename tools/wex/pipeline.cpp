@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "hw_interface/socketcan/socketcan_machine.hpp"
-#include "initializer/make_plan.hpp"
+#include "initializer/explained_plan.hpp"
 #include "models/excavator/mjcf.hpp"
 #include "models/types/cpu_clock.hpp"
 #include "mpc/refinement/refine.hpp"
@@ -128,14 +128,16 @@ class Pipeline {
     settings.seed = report_.options.seed;
     settings.iterations = report_.options.iterations;
     settings.time_budget_s = report_.options.time_budget_s;
-    Result<Plan> plan =
-        make_plan(scenario_.terrain, scenario_.machine, scenario_.task, settings,
-                  [this](const PlanProgress& p) {
-                    listen();
-                    progress_.update(format("%.1f s, ", p.elapsed_s) +
-                                     (p.best_cost ? format("best path costs %.2f m", *p.best_cost)
-                                                  : std::string("no path yet")));
-                  });
+    SearchCensus turned_down;
+    Result<Plan> plan = make_plan(
+        scenario_.terrain, scenario_.machine, scenario_.task, settings,
+        [this](const PlanProgress& p) {
+          listen();
+          progress_.update(format("%.1f s, ", p.elapsed_s) +
+                           (p.best_cost ? format("best path costs %.2f m", *p.best_cost)
+                                        : std::string("no path yet")));
+        },
+        turned_down);
     report_.stages["plan"] = watch_.lap();
     if (!plan &&
         (plan.error().code == ErrorCode::kBadInput || plan.error().code == ErrorCode::kInternal)) {
@@ -148,6 +150,7 @@ class Pipeline {
     if (!plan) {
       progress_.end("failed");
       report_.failure = plan.error();
+      if (turned_down.num_poses() > 0) report_.search = std::move(turned_down);
       return {};
     }
     report_.plan = std::move(*plan);
@@ -282,6 +285,12 @@ class Pipeline {
     });
     if (report_.drive) {
       try_to("timeline.png", [&](const auto& file) { return draw_timeline(report_, file); });
+    } else if (report_.plan && report_.options.depth == Depth::kPlanOnly) {
+      const std::string title = report_.options.map.filename().string() + ", seed " +
+                                std::to_string(report_.options.seed) + ": the plan over time";
+      try_to("timeline.png", [&](const auto& file) {
+        return draw_plan_timeline(*report_.plan, scenario_.machine, title, file);
+      });
     }
     return {};
   }

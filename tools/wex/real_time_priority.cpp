@@ -3,16 +3,11 @@
 #include <sched.h>
 
 namespace wex::app {
-namespace {
 
-constexpr int kPriority = 40;  ///< below the kernel's interrupt threads (50)
-
-}  // namespace
-
-RealTimePriority::RealTimePriority() noexcept : policy_(sched_getscheduler(0)) {
+RealTimePriority::RealTimePriority(int priority) noexcept : policy_(sched_getscheduler(0)) {
   // Who was given a real-time priority from outside keeps it.
   if (policy_ != SCHED_OTHER) return;
-  const sched_param parameters{.sched_priority = kPriority};
+  const sched_param parameters{.sched_priority = priority};
   granted_ = sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameters) == 0;
 }
 

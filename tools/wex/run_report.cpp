@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "models/types/contact_schedule.hpp"
+
 namespace wex::app {
 namespace {
 
@@ -34,6 +36,10 @@ double duration_s(const std::vector<WholeBodyNode>& nodes) {
 }
 
 Json plan_json(const Plan& plan) {
+  Json lifts = Json::object();
+  for (int i = 0; i < kNumWheels; ++i) {
+    lifts[std::string(kLimbNames[i])] = num_lifts(plan.nodes, Limb{i});
+  }
   return {{"iterations", plan.iterations},
           {"first_solution_cpu_s", number(plan.first_solution_time_s)},
           {"total_cpu_s", number(plan.total_time_s)},
@@ -41,7 +47,27 @@ Json plan_json(const Plan& plan) {
           {"cost", number(plan.cost)},
           {"duration_s", number(duration_s(plan.nodes))},
           {"nodes", plan.nodes.size()},
-          {"min_stability_margin_m", number(plan.min_stability_margin_m)}};
+          {"min_stability_margin_m", number(plan.min_stability_margin_m)},
+          {"wheel_lifts", lifts},
+          {"bucket_supports", num_lifts(plan.nodes, Limb::kArm)}};
+}
+
+Json search_json(const SearchCensus& search, const Eigen::Vector2d& map_origin_m) {
+  Json rejections = Json::object();
+  for (const auto& [count, reason] : search.rejections()) rejections[reason] = count;
+  Json places = Json::array();
+  for (const FailedPlace& place : search.failed_places()) {
+    const Pose2& where = place.last.where;
+    places.push_back({{"where", pose_json({where.x_m + map_origin_m.x(),
+                                           where.y_m + map_origin_m.y(), where.yaw_rad})},
+                      {"stepping", place.last.stepping},
+                      {"count", place.count},
+                      {"last_reason", place.last.why}});
+  }
+  return {{"poses", search.num_poses()},
+          {"rejected_poses", rejections},
+          {"failed_paths", search.failed_paths().size()},
+          {"failed_places", places}};
 }
 
 Json refinement_json(const RefinedTrajectory& refined) {
@@ -175,6 +201,7 @@ std::string result_json(const RunReport& report) {
     json["stages"][stage] = {{"cpu_s", number(time.cpu_s)}, {"wall_s", number(time.wall_s)}};
   }
   if (report.plan) json["plan"] = plan_json(*report.plan);
+  if (report.search) json["search"] = search_json(*report.search, report.map_origin_m);
   if (report.refined) json["refinement"] = refinement_json(*report.refined);
   if (report.drive) {
     json["mpc"] = mpc_json(*report.drive);
@@ -202,6 +229,10 @@ std::string summary_table(const RunReport& report) {
         report.plan->path_length_m, duration_s(report.plan->nodes),
         report.plan->min_stability_margin_m, report.plan->iterations,
         report.plan->first_solution_time_s);
+    if (const int lifts = num_wheel_lifts(report.plan->nodes); lifts > 0) {
+      row("steps", "%d wheels lifted, bucket down %d times, cost %.1f m of driving", lifts,
+          num_lifts(report.plan->nodes, Limb::kArm), report.plan->cost);
+    }
   }
   if (report.refined) {
     row("refinement", "%s, %d iterations, %.1f s CPU, margin %.2f m",

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "initializer/search_census.hpp"
 #include "models/types/plan.hpp"
 #include "tools/wex/bus_report.hpp"
 #include "tools/wex/drive_record.hpp"
@@ -24,6 +25,7 @@ struct RunReport {
   Eigen::Vector2d map_origin_m{0.0, 0.0};   ///< map frame = local + this
   std::map<std::string, StageTime> stages;  ///< load, plan, refine, drive, report
   std::optional<Plan> plan;
+  std::optional<SearchCensus> search;  ///< of a search that found no plan: what it turned down
   std::optional<RefinedTrajectory> refined;
   std::optional<DriveRecord> drive;
   double simulation_cpu_s = 0.0;      ///< part of the drive spent in the simulation; NaN: none

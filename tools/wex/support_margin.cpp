@@ -53,6 +53,11 @@ double support_margin_m(const MachineModel& machine, const Eigen::VectorXd& q,
     down -= down.dot(axle) * axle;
     feet.push_back((p_world_centre + leg.radius_m * down.normalized()).head<2>());
   }
+  if (machine.arm && contacts[static_cast<std::size_t>(Limb::kArm)]) {
+    feet.push_back(
+        machine.tree.position(workspace, machine.arm->contact_body, machine.arm->p_body_contact)
+            .head<2>());
+  }
   if (feet.size() < 3) return -std::numeric_limits<double>::infinity();
   const Eigen::Vector2d com = machine.tree.com(workspace).head<2>();
   const std::vector<Eigen::Vector2d> hull = convex_hull(std::move(feet));

@@ -5,9 +5,9 @@
 namespace wex::app {
 
 /// Static stability of a posture for reports: smallest distance from the vertical projection of the
-/// centre of mass to an edge of the convex hull of the wheels in contact, > 0 inside [m].
+/// centre of mass to an edge of the convex hull of the limbs in contact, > 0 inside [m].
 ///   q         num_coordinates entries (contract)
-///   contacts  wheels that count; fewer than three support nothing: -infinity
+///   contacts  limbs that count; fewer than three support nothing: -infinity
 [[nodiscard]] double support_margin_m(const MachineModel& machine, const Eigen::VectorXd& q,
                                       const ContactFlags& contacts);
 

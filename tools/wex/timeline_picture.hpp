@@ -13,4 +13,11 @@ namespace wex::app {
 [[nodiscard]] Result<void> draw_timeline(const RunReport& report,
                                          const std::filesystem::path& file);
 
+/// Of a plan: its contact schedule, way, tilt and stability margin over time.
+///   plan    takes time (contract)
+///   errors  kBadInput if the file cannot be written
+[[nodiscard]] Result<void> draw_plan_timeline(const Plan& plan, const MachineModel& machine,
+                                              const std::string& title,
+                                              const std::filesystem::path& file);
+
 }  // namespace wex::app

@@ -224,6 +224,26 @@ TEST(Catalogue, KnowsEveryFrameByItsId) {
   EXPECT_EQ(kind_of(encoded(some_command())), MessageKind::kZoneCommand);
 }
 
+template <typename Message>
+void expect_zone_comes_back() {
+  for (int zone = 0; zone < kNumZones; ++zone) {
+    Message message, received;
+    message.zone = zone;
+    SendContext context;
+    CanFrame frame;
+    ASSERT_TRUE(encode(message, context, frame));
+    ASSERT_TRUE(decode(frame, 0, received));
+    EXPECT_EQ(received.zone, zone);
+  }
+}
+
+TEST(Codec, TheIdSaysWhichZoneSpeaks) {
+  expect_zone_comes_back<ZoneCommand>();
+  expect_zone_comes_back<ZoneFeedback>();
+  expect_zone_comes_back<ZonePressure>();
+  expect_zone_comes_back<ZoneStatus>();
+}
+
 TEST(Catalogue, ForeignFramesAreUnknown) {
   CanFrame frame = encoded(some_command());
   for (bool CanFrame::* flag : {&CanFrame::extended, &CanFrame::remote, &CanFrame::error}) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <stdexcept>
 
 #include "hw_interface/electronics/machine_limits.hpp"
 
@@ -76,6 +77,84 @@ TEST_F(HostLimitsTest, ATargetFarFromTheMeasuredPositionIsBroughtNearer) {
   EXPECT_EQ(command.position_target[joint("DIPPER")], 0.5);
 }
 
+TEST_F(HostLimitsTest, WhereClampingAndRefusingBegin) {
+  const auto outcome_of_rate = [&](const char* name, double rate) {
+    JointCommand command = command_of_zero();
+    command.rate[joint(name)] = rate;
+    return limits_.check(command, position_);
+  };
+  EXPECT_EQ(outcome_of_rate("BOOM", 0.35 + 0.9e-6), LimitOutcome::kOk);
+  EXPECT_EQ(outcome_of_rate("BOOM", 0.35 + 1.1e-6), LimitOutcome::kClamped);
+  EXPECT_EQ(outcome_of_rate("LF_WHEEL", -5.0), LimitOutcome::kClamped);
+  EXPECT_EQ(outcome_of_rate("LF_WHEEL", std::nextafter(-5.0, -6.0)), LimitOutcome::kRejectedRange);
+  HostLimitsSettings coarse;
+  coarse.tolerance = 0.25;
+  limits_ = HostLimits(m545(), coarse);
+  EXPECT_EQ(outcome_of_rate("LF_WHEEL", 2.75), LimitOutcome::kOk);
+  EXPECT_EQ(outcome_of_rate("LF_WHEEL", std::nextafter(2.75, 3.0)), LimitOutcome::kClamped);
+}
+
+TEST_F(HostLimitsTest, TargetsMayBeAQuarterBeyondTheirStops) {
+  const int boom = joint("BOOM");
+  const SlotLimits stops = limits_of(slot_of("BOOM"));
+  const double beyond[] = {stops.lower - 0.25, stops.upper + 0.25};
+  const double stop[] = {stops.lower, stops.upper};
+  for (const int end : {0, 1}) {
+    JointCommand command = command_of_zero();
+    command.has_position_target[boom] = true;
+    position_[boom] = stop[end];
+    command.position_target[boom] = beyond[end];
+    EXPECT_EQ(limits_.check(command, position_), LimitOutcome::kClamped);
+    EXPECT_EQ(command.position_target[boom], stop[end]);
+    command.position_target[boom] = std::nextafter(beyond[end], 100.0 * beyond[end]);
+    EXPECT_EQ(limits_.check(command, position_), LimitOutcome::kRejectedRange);
+  }
+}
+
+TEST_F(HostLimitsTest, JointsThatGoByRateHaveNoTarget) {
+  for (const char* name : {"TURN", "LF_WHEEL"}) {
+    JointCommand command = command_of_zero();
+    command.has_position_target[joint(name)] = true;
+    command.position_target[joint(name)] = 100.0;
+    EXPECT_EQ(limits_.check(command, position_), LimitOutcome::kOk) << name;
+    EXPECT_EQ(command.position_target[joint(name)], 100.0);
+  }
+}
+
+TEST_F(HostLimitsTest, EveryOtherJointsTargetIsLimited) {
+  const auto clamped_joints = [&](const MachineModel& machine) {
+    const HostLimits limits(machine);
+    int count = 0;
+    for (int i = 0; i < machine.num_joints(); ++i) {
+      JointCommand command = command_of_zero();
+      const SlotLimits stops = limits_of(slot_of(machine.joints[i].name));
+      command.has_position_target[i] = true;
+      command.position_target[i] = std::isfinite(stops.upper) ? stops.upper + 0.1 : 0.6;
+      if (limits.check(command, position_) == LimitOutcome::kClamped) ++count;
+    }
+    return count;
+  };
+  EXPECT_EQ(clamped_joints(m545()), m545().num_joints() - 5) << "four wheels and TURN";
+  MachineModel other = m545();
+  other.arm->coordinates.clear();
+  EXPECT_EQ(clamped_joints(other), other.num_joints() - 4) << "nothing says which joint is TURN";
+  other.arm.reset();
+  EXPECT_EQ(clamped_joints(other), other.num_joints() - 4);
+}
+
+TEST_F(HostLimitsTest, BehindTheLastJointNothingCounts) {
+  const int behind = m545().num_joints();
+  ASSERT_LT(behind, kMaxJoints);
+  JointCommand command = command_of_zero();
+  command.rate[behind] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(limits_.check(command, position_), LimitOutcome::kOk);
+  command.rate[behind] = 1e6;
+  EXPECT_EQ(limits_.check(command, position_), LimitOutcome::kOk);
+  std::array<double, kMaxJoints> rate{};
+  rate[behind] = 1.0;
+  EXPECT_FALSE(limits_.limit_rates(rate, position_));
+}
+
 TEST_F(HostLimitsTest, WhatIsNotANumberIsRefusedWhole) {
   for (const double poison :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
@@ -103,21 +182,26 @@ TEST_F(HostLimitsTest, RatesGrowByTheAccelerationAndFallAtOnce) {
   const int boom = joint("BOOM");
   std::array<double, kMaxJoints> rate{};
   double before = 0.0;
+  long times_limited = 0;
   for (int cycle = 0; cycle < 120; ++cycle) {
     rate = {};
     rate[boom] = 0.35;
     const bool limited = limits_.limit_rates(rate, position_);
     EXPECT_LE(rate[boom] - before, 1.1 * 0.3 * 0.01 + 1e-12);
     EXPECT_EQ(limited, rate[boom] < 0.35);
+    if (limited) ++times_limited;
     before = rate[boom];
   }
+  EXPECT_EQ(limits_.rates_limited(), times_limited);
   EXPECT_EQ(rate[boom], 0.35);
   rate[boom] = 0.0;
   EXPECT_FALSE(limits_.limit_rates(rate, position_));
   rate[boom] = -0.35;
   EXPECT_TRUE(limits_.limit_rates(rate, position_));
   EXPECT_NEAR(rate[boom], -1.1 * 0.3 * 0.01, 1e-12);
-  EXPECT_GT(limits_.rates_limited(), 0);
+  rate[boom] = -0.35;
+  EXPECT_TRUE(limits_.limit_rates(rate, position_));
+  EXPECT_NEAR(rate[boom], -2.2 * 0.3 * 0.01, 1e-12);
 }
 
 TEST_F(HostLimitsTest, TheWindowIsAskedAsWell) {
@@ -129,7 +213,7 @@ TEST_F(HostLimitsTest, TheWindowIsAskedAsWell) {
     rate[wheel] = 2.5;
     limits_.limit_rates(rate, position_);
   }
-  EXPECT_NEAR(rate[wheel], 0.8 * 0.3 + 0.12, 1e-5);
+  EXPECT_NEAR(rate[wheel], 0.8 * 0.3 + 0.12 + 1e-6, 1e-9);
 }
 
 TEST_F(HostLimitsTest, StandingStillForgetsTheRate) {
@@ -147,16 +231,21 @@ TEST_F(HostLimitsTest, StandingStillForgetsTheRate) {
 
 TEST_F(HostLimitsTest, TowardsAStopOnlyAsFastAsCanBeBraked) {
   const int boom = joint("BOOM");
-  std::array<double, kMaxJoints> rate{};
-  for (int cycle = 0; cycle < 200; ++cycle) {
-    rate[boom] = 0.35;
-    limits_.limit_rates(rate, position_);
-  }
-  for (const double distance : {0.1, 0.01, 0.0, -0.05}) {
-    position_[boom] = 1.28 - distance;
-    rate[boom] = 0.35;
-    limits_.limit_rates(rate, position_);
-    EXPECT_NEAR(rate[boom], std::min(0.35, std::sqrt(2 * 0.3 * std::max(0.0, distance))), 1e-12);
+  const SlotLimits stops = limits_of(slot_of("BOOM"));
+  for (const double sign : {1.0, -1.0}) {
+    position_[boom] = 0.5;
+    std::array<double, kMaxJoints> rate{};
+    for (int cycle = 0; cycle < 200; ++cycle) {
+      rate[boom] = sign * 0.35;
+      limits_.limit_rates(rate, position_);
+    }
+    for (const double distance : {0.1, 0.01, 0.0, -0.05}) {
+      position_[boom] = sign > 0.0 ? stops.upper - distance : stops.lower + distance;
+      rate[boom] = sign * 0.35;
+      limits_.limit_rates(rate, position_);
+      const double fastest = std::min(0.35, std::sqrt(2 * 0.3 * std::max(0.0, distance)));
+      EXPECT_NEAR(rate[boom], sign * fastest, 1e-12);
+    }
   }
 }
 
@@ -167,6 +256,20 @@ TEST_F(HostLimitsTest, ARateThatIsNotFiniteBecomesZero) {
   EXPECT_TRUE(limits_.limit_rates(rate, position_));
   EXPECT_EQ(rate[0], 0.0);
   EXPECT_EQ(rate[1], 0.0);
+}
+
+TEST(HostLimits, MachinesThatTheBusDoesNotKnowAndTimeThatStandsAreBugs) {
+  MachineModel machine = m545();
+  machine.joints[3].name = "TENTACLE";
+  EXPECT_THROW(HostLimits{machine}, std::logic_error);
+  HostLimitsSettings settings;
+  settings.period_s = 0.0;
+  EXPECT_THROW(HostLimits(m545(), settings), std::logic_error);
+  machine = m545();
+  while (machine.num_joints() < kMaxJoints) machine.joints.push_back(machine.joints.front());
+  EXPECT_NO_THROW(HostLimits{machine});
+  machine.joints.push_back(machine.joints.front());
+  EXPECT_THROW(HostLimits{machine}, std::logic_error);
 }
 
 // T16: what passes the host is never refused by the electronics, whose limits were written apart.

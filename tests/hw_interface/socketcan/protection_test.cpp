@@ -105,12 +105,17 @@ TEST(SequenceCheck, AJumpThatTimeExplainsIsALoss) {
   }
   EXPECT_EQ(started_at(7).update(7, 100), SequenceVerdict::kRepeated);
   EXPECT_EQ(started_at(7).update(11, -5), SequenceVerdict::kWrongSequence);
+  EXPECT_EQ(started_at(7).update(10, -5), SequenceVerdict::kLostSome);
 }
 
 TEST(SequenceCheck, CountsTheFramesThatWereDueAndDidNotCome) {
   EXPECT_EQ(SequenceCheck::missing_after(10.0, 10.0), 0);
   EXPECT_EQ(SequenceCheck::missing_after(19.4, 10.0), 0);
   EXPECT_EQ(SequenceCheck::missing_after(19.6, 10.0), 1) << "stamps are whole milliseconds";
+  EXPECT_EQ(SequenceCheck::missing_after(19.55, 10.0), 1);
+  EXPECT_EQ(SequenceCheck::missing_after(5.0, 10.0), 0) << "it came early";
+  EXPECT_EQ(SequenceCheck::missing_after(0.55, 0.1), 9);
+  EXPECT_EQ(SequenceCheck::missing_after(0.0, 0.1), 0);
   EXPECT_EQ(SequenceCheck::missing_after(50.0, 10.0), 4);
   EXPECT_EQ(SequenceCheck::missing_after(100.0, 20.0), 4);
   EXPECT_EQ(SequenceCheck::missing_after(0.0, 10.0), 0);

@@ -133,13 +133,19 @@ Lifecycle Rig::lifecycle() const {
 }
 
 void Rig::enable() {
-  ++board_->activations;
-  if (!wait_for(6.0, [&] {
-        return mode() == can::MachineMode::kEnabled && lifecycle() == Lifecycle::kActive;
-      })) {
-    throw std::runtime_error("the machine is not enabled: mode " +
-                             std::to_string(static_cast<int>(mode())));
+  // A process that is late by 100 ms ends a handshake, as it should: then it is asked for again.
+  constexpr int kAttempts = 3;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (attempt > 0) ++enabled_again_;
+    ++board_->activations;
+    if (wait_for(6.0, [&] {
+          return mode() == can::MachineMode::kEnabled && lifecycle() == Lifecycle::kActive;
+        })) {
+      return;
+    }
   }
+  throw std::runtime_error("the machine is not enabled: mode " +
+                           std::to_string(static_cast<int>(mode())));
 }
 
 void Rig::drive(Motion motion) {

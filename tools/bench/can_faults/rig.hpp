@@ -28,7 +28,7 @@ class Rig {
   Rig& operator=(const Rig&) = delete;
   ~Rig();
 
-  /// Lets the host activate the machine; throws if it is not enabled within 5 s.
+  /// Lets the host activate the machine, up to three times; throws if it is not enabled then.
   void enable();
   /// Enabled and moving steadily (or as a sine), for long enough to be at speed.
   void drive(Motion motion = Motion::kSteady);
@@ -47,6 +47,8 @@ class Rig {
 
   [[nodiscard]] Blackboard& board() { return *board_; }
   [[nodiscard]] pid_t host() const { return host_; }
+  /// Activations that had to be repeated.
+  [[nodiscard]] int enabled_again() const { return enabled_again_; }
   [[nodiscard]] can::MachineMode mode() const;
   [[nodiscard]] Lifecycle lifecycle() const;
 
@@ -55,6 +57,7 @@ class Rig {
   HostOptions options_;
   SharedBlackboard board_;
   pid_t host_ = -1, machine_ = -1;
+  int enabled_again_ = 0;
 };
 
 }  // namespace wex::can_faults

@@ -186,7 +186,7 @@ void end_processes(Scene& scene, bool) {
 void open_the_estop(Scene& scene, bool full) {
   const int times = full ? 1000 : 20;
   std::vector<double> reported_ms, silent_ms, stood_ms, late_ms, speed;
-  int not_latched = 0, left_without_edge = 0;
+  int not_latched = 0, left_without_edge = 0, enabled_again = 0;
   std::mt19937 random(1);  // NOLINT(cert-msc51-cpp): repeatable on purpose
   std::uniform_real_distribution<double> phase_s(0.0, 0.02);
   for (int begun = 0; begun < times;) {
@@ -224,6 +224,7 @@ void open_the_estop(Scene& scene, bool full) {
         throw std::runtime_error("the host does not leave the e-stop after the reset");
       }
     }
+    enabled_again += rig.enabled_again();
   }
   const auto row = [](const char* what, std::vector<double> ms) {
     return text("%s p50 %.1f p99 %.1f max %.1f ms", what, percentile(ms, 0.5), percentile(ms, 0.99),
@@ -241,13 +242,14 @@ void open_the_estop(Scene& scene, bool full) {
   print_figure("T13", text("e-stop at random phase on the bus, %d times", times),
                row("reported", reported_ms) + "; " + row("last command", silent_ms) + "; " +
                    row("stands", stood_ms) + "; " + row("periods late by", late_ms) +
-                   text("; not latched %d, left without an edge %d; turned before in %td",
-                        not_latched, left_without_edge, turned),
+                   text("; not latched %d, left without an edge %d; turned before in %td; second "
+                        "handshake needed %d times",
+                        not_latched, left_without_edge, turned, enabled_again),
                "reported <= 10 ms, last command <= 20 (both +25, + late), stands <= 150 (+ late), "
-               "latched, edge, 9 of 10 turned",
+               "latched, edge, 9 of 10 turned, a second handshake for 1 % at most",
                all_reported && 10 * turned >= 9 * times && worst_report <= 10.0 + kTolerance_ms &&
                    worst_silence <= 20.0 + kTolerance_ms && worst_stop <= kMaxMotion_ms &&
-                   not_latched + left_without_edge == 0);
+                   not_latched + left_without_edge == 0 && enabled_again <= 1 + times / 100);
 }
 
 void soak(Scene& scene, bool full) {
@@ -264,6 +266,7 @@ void soak(Scene& scene, bool full) {
   const bool enabled = rig.mode() == can::MachineMode::kEnabled;
   const long growth_kb =
       std::max(board.host_resident_kb - host_kb, board.machine_resident_kb - machine_kb);
+  const double late_ms = lateness_ms(board, begin_ns, now_ns());
   std::string bins;
   for (int i = 0; i < can::LatencyHistogram::kNumBins; ++i) {
     const bool last = i + 1 == can::LatencyHistogram::kNumBins;
@@ -280,12 +283,12 @@ void soak(Scene& scene, bool full) {
           "periods late by %.0f ms at most",
           bus.frames_sent(), bus.frames_received(), bus.frames_lost(), bus.receive_overflows, holds,
           100.0 * bus.bus_load, 100.0 * bus.max_bus_load, bins.c_str(),
-          bus.command_to_report.max_ms(), growth_kb, lateness_ms(board, begin_ns, now_ns())),
-      "0 lost, 0 overflows, 0 holds (unless a process was late by 30 ms), load <= 50 %, <= 60 %, "
-      "<= 200 kB",
+          bus.command_to_report.max_ms(), growth_kb, late_ms),
+      "0 lost, 0 overflows, 0 holds (unless a process was late by 30 ms), load <= 50 %, <= 60 % "
+      "(+ late), <= 200 kB",
       bus.frames_lost() == 0 && bus.receive_overflows == 0 &&
           unexcused_holds(board, begin_ns) == 0 && (enabled || holds > 0) && bus.bus_load <= 0.50 &&
-          bus.max_bus_load <= 0.60 && growth_kb <= 200);
+          bus.max_bus_load <= 0.60 * (1.0 + 1e-3 * late_ms) && growth_kb <= 200);
 }
 
 void jump_the_clock(Scene& scene, bool) {

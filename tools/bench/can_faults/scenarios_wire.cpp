@@ -75,19 +75,19 @@ void lose_frames(Scene& scene, bool full) {
     const int faults = entries(board, can::MachineMode::kFault, begin_ns);
     const double enabled = enabled_s(board, begin_ns);
     const Motion_ms motion = longest_motion_without_command(board, begin_ns);
-    // Three frames lost in a row are a wrong sequence, which three good ones must heal: 60 ms, so
-    // the machine holds. Six streams of commands, six of feedback and the pose, 100 Hz each; only
-    // time enabled counts. The count of a rare event scatters by its root.
+    // Five frames lost in a row are 50 ms of silence: the machine holds. Six streams of commands,
+    // six of feedback and the pose, 100 Hz each; only time enabled counts. The count of a rare
+    // event scatters by its root.
     const double p = percent / 100.0;
-    const double expected = 13.0 * enabled * 100.0 * std::pow(p, 3) * (1.0 - p);
+    const double expected = 13.0 * enabled * 100.0 * std::pow(p, 5) * (1.0 - p);
     const CommandCheck check = check_commands(board, begin_ns);
     const bool holds_as_expected = percent == 0
                                        ? unexcused_holds(board, begin_ns) == 0
                                        : holds <= 2.0 * expected + 6.0 * std::sqrt(expected) + 3.0;
-    const bool holds_in_time = percent < 50 || (holds > 0 && enabled < 0.2 * duration_s);
+    const bool holds_in_time = percent < 50 || (holds > 0 && enabled < 1.0 + 0.2 * duration_s);
     print_figure(
         "T6", text("loss of %d %% both ways, %.0f s", percent, duration_s),
-        text("%.1f %% of commands lost, longest gap %.0f ms, enabled %.1f s, holds %d (3 lost in a "
+        text("%.1f %% of commands lost, longest gap %.0f ms, enabled %.1f s, holds %d (5 lost in a "
              "row, expected: %.1f), faults %d, moved %.0f ms after a command",
              check.sent > 0 ? 100.0 * static_cast<double>(check.sent - check.received) /
                                   static_cast<double>(check.sent)
@@ -144,36 +144,39 @@ void refuse_frames(Scene& scene, bool full) {
   const double duration_s = full ? 60.0 : 5.0;
   Rig rig(scene);
   rig.drive();
-  const auto cycles_ms = [&](std::int64_t begin_ns) {
+  const auto cycles_ms = [](const auto& samples, std::int64_t begin_ns) {
     std::vector<double> cycles;
-    for (std::size_t i = 1; i < rig.board().host.size(); ++i) {
-      const HostSample& sample = rig.board().host[i];
-      if (rig.board().host[i - 1].time_ns < begin_ns) continue;
-      cycles.push_back(1e-6 *
-                       static_cast<double>(sample.time_ns - rig.board().host[i - 1].time_ns));
+    for (std::size_t i = 1; i < samples.size(); ++i) {
+      const std::int64_t last_ns = samples[i - 1].time_ns;
+      if (last_ns < begin_ns) continue;
+      cycles.push_back(1e-6 * static_cast<double>(samples[i].time_ns - last_ns));
     }
     return cycles;
   };
   sleep_s(1.0);
-  auto healthy_ms = cycles_ms(now_ns() - 1'000'000'000);
+  auto healthy_ms = cycles_ms(rig.board().host, now_ns() - 1'000'000'000);
   const long resident_kb = rig.board().host_resident_kb;
   // A queue of one frame that leaves ten a second: nearly every send is refused with ENOBUFS.
   shell("tc qdisc replace dev vxcan0 root tbf rate 6kbit burst 100 limit 100");
   const std::int64_t begin_ns = now_ns();
   sleep_s(duration_s);
-  auto storm_ms = cycles_ms(begin_ns);
+  auto storm_ms = cycles_ms(rig.board().host, begin_ns);
+  auto machine_ms =
+      cycles_ms(rig.board().machine, begin_ns);  // sends freely: late with its kernel only
   const long growth_kb = rig.board().host_resident_kb - resident_kb;
   const double healthy_p99_ms = percentile(healthy_ms, 0.99);
   const double storm_p99_ms = percentile(storm_ms, 0.99);
+  const double machine_p99_ms = percentile(machine_ms, 0.99);
   const Motion_ms motion = longest_motion_without_command(rig.board(), begin_ns);
-  print_figure("T10", text("queue full for %.0f s (ENOBUFS)", duration_s),
-               text("%ld sends refused; cycle p99 %.1f ms (healthy %.1f); memory +%ld kB; moved "
-                    "%.0f ms after the last command",
-                    rig.board().statistics.not_taken, storm_p99_ms, healthy_p99_ms, growth_kb,
-                    motion.driven),
-               "cycle p99 <= 25 ms, <= 500 kB, <= 150 ms",
-               rig.board().statistics.not_taken > 50 && storm_p99_ms <= 25.0 && growth_kb <= 500 &&
-                   motion.by_itself() <= kMaxMotion_ms);
+  print_figure(
+      "T10", text("queue full for %.0f s (ENOBUFS)", duration_s),
+      text("%ld sends refused; cycle p99 %.1f ms (healthy %.1f, the machine's %.1f); memory "
+           "+%ld kB; moved %.0f ms after the last command",
+           rig.board().statistics.not_taken, storm_p99_ms, healthy_p99_ms, machine_p99_ms,
+           growth_kb, motion.driven),
+      "cycle p99 <= 15 ms over the machine's, <= 500 kB, <= 150 ms",
+      rig.board().statistics.not_taken > 50 && storm_p99_ms <= machine_p99_ms + 15.0 &&
+          growth_kb <= 500 && motion.by_itself() <= kMaxMotion_ms);
 }
 
 }  // namespace wex::can_faults
