@@ -62,15 +62,12 @@ TEST_F(RoadmapCommand, SaysWhyAFileWasRefused) {
 
 TEST_F(RoadmapCommand, RefusesTheRoadmapOfAnotherMachineAndMakesItsOwn) {
   ASSERT_TRUE(run());
-  const fs::path own =
-      roadmap_file(load_machine().value(), options_.settings, options_.cache).value();
-  options_.machine = WEX_TEST_DATA_DIR "/small_walker";
-  ASSERT_TRUE(run());
-  const fs::path other =
-      roadmap_file(load_machine(options_.machine).value(), options_.settings, options_.cache)
-          .value();
-  fs::copy_file(other, own, fs::copy_options::overwrite_existing);
-  options_.machine = "m545";
+  const MachineModel other = load_machine(WEX_TEST_DATA_DIR "/small_walker").value();
+  ASSERT_TRUE(load_or_build_roadmaps(other, options_.settings, options_.cache));
+  const auto file = [&](const MachineModel& machine) {
+    return roadmap_file(machine, options_.settings, options_.cache).value();
+  };
+  fs::copy_file(file(other), file(load_machine().value()), fs::copy_options::overwrite_existing);
   ASSERT_TRUE(run());
   EXPECT_THAT(text_.str(), HasSubstr("was made for another machine"));
   ASSERT_TRUE(run());
