@@ -75,6 +75,24 @@ void append_path(DrivePath& path, const DrivePath& more) {
   }
 }
 
+bool same_way(const DrivePath& a, const DrivePath& b) {
+  constexpr double kSameM = 1e-6;
+  const auto next = [](const DrivePath& path, std::size_t i) {
+    while (i < path.size() && std::abs(path[i].length_m) < kSameM) ++i;
+    return i;
+  };
+  std::size_t i = next(a, 0), j = next(b, 0);
+  while (i < a.size() && j < b.size()) {
+    if (std::abs(a[i].length_m - b[j].length_m) > kSameM ||
+        std::abs(a[i].curvature_1_m - b[j].curvature_1_m) > kSameM) {
+      return false;
+    }
+    i = next(a, i + 1);
+    j = next(b, j + 1);
+  }
+  return i == a.size() && j == b.size();
+}
+
 double path_length_m(const DrivePath& path) {
   double length_m = 0.0;
   for (const PathSegment& segment : path) length_m += std::abs(segment.length_m);

@@ -26,6 +26,9 @@ struct PathCostWeights {
 /// Appends `more`, which starts where `path` ends, its yaw shifted by whole turns to be continuous.
 void append_path(DrivePath& path, const DrivePath& more);
 
+/// The same way in the same gears, segments of no length aside.
+[[nodiscard]] bool same_way(const DrivePath& a, const DrivePath& b);
+
 [[nodiscard]] double path_length_m(const DrivePath& path);
 /// Length plus the penalties of the weights; every change of gear between segments is a cusp.
 [[nodiscard]] double path_cost_m(const DrivePath& path, const PathCostWeights& weights);

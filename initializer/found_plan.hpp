@@ -20,7 +20,8 @@ struct SearchAids {
   std::vector<DrivePath> paths;                ///< from start to goal, tried before all others
   std::optional<BaseCoordinates> begin;        ///< base at the start, if not Algorithm 1's
   bool first_will_do = false;                  ///< the first plan ends the search
-  bool grow_trees = true;                      ///< false: no path that must be searched for
+  std::optional<DrivePath> hopeless;           ///< known not to do
+  bool other_paths = true;  ///< false: none but `paths`, nothing that must be searched for
 };
 
 /// A plan with what a later search can use.

@@ -219,6 +219,7 @@ Result<void> PlanSearch::try_direct_paths() {
   if (auto built = build_certifier(); !built) return built;
   if (!settings_.ablation.certificate_first) return {};
   for (const DrivePath& path : direct) {
+    if (aids_.hopeless && same_way(path, *aids_.hopeless)) continue;
     if (consider_stepping(path)) return {};
   }
   if (!settings_.ablation.alignment) return {};
@@ -290,10 +291,10 @@ Result<Plan> PlanSearch::run() {
   lower_bound_m_ =
       path_length_m(reeds_shepp_path(task_.start, task_.goal, search_settings_.turning_radius_m));
   if (auto tried = try_given_paths(); !tried) return tl::unexpected<Error>(tried.error());
-  if (!(best_ && aids_.first_will_do)) {
+  if (aids_.other_paths && !(best_ && aids_.first_will_do)) {
     if (auto tried = try_direct_paths(); !tried) return tl::unexpected<Error>(tried.error());
   }
-  while (aids_.grow_trees && !out_of_budget()) {
+  while (aids_.other_paths && !out_of_budget()) {
     if (auto grown = grow(kDriving); !grown) return tl::unexpected<Error>(grown.error());
     if (!certifier_ || out_of_budget()) continue;
     if (auto grown = grow(kStepping); !grown) return tl::unexpected<Error>(grown.error());

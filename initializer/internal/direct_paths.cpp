@@ -59,6 +59,7 @@ std::vector<DrivePath> direct_paths(const Pose2& from, const Pose2& to, double t
   std::stable_sort(paths.begin(), paths.end(), [&](const DrivePath& a, const DrivePath& b) {
     return path_cost_m(a, weights) < path_cost_m(b, weights);
   });
+  paths.erase(std::unique(paths.begin(), paths.end(), same_way), paths.end());
   return paths;
 }
 

@@ -18,12 +18,13 @@ namespace {
 /// How far a stretch reaches beyond what does not hold, and how hard it is tried.
 struct Attempt {
   double margin_m = 0.0;
-  bool grow_trees = false;
+  bool along_own_path = false;  ///< and nowhere else
 };
-// Close by along the same path; then with room for a way around, in an eighth of the budget.
-constexpr std::array<Attempt, 2> kAttempts{{{0.6, false}, {9.0, true}}};
-constexpr double kAttemptShare = 0.125;
-constexpr std::size_t kMaxPaths = 6;  // remembered
+// Close by along the same path; then with room for a way around.
+constexpr std::array<Attempt, 2> kAttempts{{{0.6, true}, {9.0, false}}};
+constexpr double kWorthwhileShare = 0.5;  // of the plan: longer ways around are no shorter search
+constexpr double kAttemptShare = 0.5;     // of the time the plan before took to be found
+constexpr std::size_t kMaxPaths = 6;      // remembered
 
 Pose2 pose_of(const WholeBodyNode& node) {
   return {node.q[kBaseX], node.q[kBaseY], node.q[kBaseYaw]};
@@ -54,6 +55,9 @@ class Replanner {
     for (const Attempt& attempt : kAttempts) {
       const auto ends = stretch_around(attempt.margin_m);
       if (!ends) break;
+      const double share =
+          (distances_m_[ends->second] - distances_m_[ends->first]) / distances_m_.back();
+      if (!attempt.along_own_path && share > kWorthwhileShare) break;
       if (auto replanned = with_new_stretch(ends->first, ends->second, attempt)) {
         return *std::move(replanned);
       }
@@ -111,12 +115,16 @@ class Replanner {
     aids.paths = {own};
     aids.begin = plan.nodes[first].q.head<kNumBaseCoordinates>();
     aids.first_will_do = true;
-    aids.grow_trees = attempt.grow_trees;
+    aids.other_paths = !attempt.along_own_path;
     PlanSettings settings = settings_;
-    settings.time_budget_s *= kAttemptShare;
+    settings.time_budget_s =
+        std::min(settings.time_budget_s, kAttemptShare * plan.first_solution_time_s);
     auto stretch = find_plan(terrain_, machine_, between, settings, *check_, std::move(aids), {},
                              thread_cpu_time_s());
-    if (!stretch) return std::nullopt;
+    if (!stretch) {
+      own_path_failed_ = own_path_failed_ || attempt.along_own_path;
+      return std::nullopt;
+    }
     auto spliced = splice(machine_, *check_, plan, first, last, stretch->plan, settings_);
     if (!spliced) return std::nullopt;
     const PlanVerdict verdict = verify_plan(terrain_, machine_, *spliced, settings_);
@@ -141,6 +149,10 @@ class Replanner {
     SearchAids aids;
     aids.tables = before_.tables;
     aids.paths.assign(before_.paths.rbegin(), before_.paths.rend());
+    if (own_path_failed_) {
+      aids.hopeless = aids.paths.front();
+      aids.paths.erase(aids.paths.begin());
+    }
     aids.first_will_do = true;
     auto found = find_plan(terrain_, machine_, before_.plan.task, settings_, *check_,
                            std::move(aids), {}, begin_s_);
@@ -176,6 +188,7 @@ class Replanner {
   std::optional<PoseCheck> check_;
   std::vector<double> distances_m_;   // of nodes, along the path
   std::vector<std::size_t> unsound_;  // nodes
+  bool own_path_failed_ = false;
   std::size_t num_touched_ = 0, num_replaced_ = 0;
 };
 

@@ -330,12 +330,27 @@ bool LayeredGraph::edge_is_good(const Node& from, const Node& to) const {
     const BaseFrame base = BaseFrame::from(base_a + share * change);
     const double curvature_1_m = std::lerp(layer_a.curvature_1_m, layer_b.curvature_1_m, share);
     const Stance stance = check_->stance(base, check_->steering(curvature_1_m), plain_.clearances);
-    if (!stance.allows(support.lifted) ||
+    if (!stance.allows(support.lifted) || !check_->tyres_rest(stance, support.lifted) ||
         margin_m(base, stance, support, bucket_of(from), plain_.margin_m) < plain_.margin_m) {
       return false;
     }
   }
   return true;
+}
+
+// On rough ground the rest of a wheel as a disc, which stances are made of, may be an error.
+int LayeredGraph::ban_tyres_off_the_ground(std::int32_t end) {
+  int num_banned = 0;
+  for (std::int32_t n = end; n >= 0; n = nodes_[static_cast<std::size_t>(n)].parent) {
+    Node& node = nodes_[static_cast<std::size_t>(n)];
+    const std::size_t support = class_of(node);
+    if (check_->tyres_rest(stance_of(node.record), kSupportClasses[support].lifted)) continue;
+    records_[static_cast<std::size_t>(node.record)].banned |=
+        static_cast<std::uint16_t>(1U << support);
+    node.feasible = 0;
+    ++num_banned;
+  }
+  return num_banned;
 }
 
 LayeredGraph::Answer LayeredGraph::search(bool from_nominal, bool or_furthest) {
@@ -360,7 +375,7 @@ LayeredGraph::Answer LayeredGraph::search(bool from_nominal, bool or_furthest) {
     answer.num_stances = num_stances_;
     answer.num_expanded = num_expanded_;
     if (end < 0) return answer;
-    bool all_good = true;
+    bool all_good = ban_tyres_off_the_ground(end) == 0;
     for (std::int32_t n = end; nodes_[static_cast<std::size_t>(n)].parent >= 0;) {
       const std::int32_t parent = nodes_[static_cast<std::size_t>(n)].parent;
       if (!edge_is_good(nodes_[static_cast<std::size_t>(parent)],

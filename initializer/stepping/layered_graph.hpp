@@ -121,6 +121,7 @@ class LayeredGraph {
   void expand(std::int32_t node);
   void push_start(bool from_nominal);
   [[nodiscard]] std::uint64_t edge_between(std::int32_t from, std::int32_t to) const;
+  int ban_tyres_off_the_ground(std::int32_t end);  ///< of an answer; how many states
   [[nodiscard]] bool edge_is_good(const Node& from, const Node& to) const;
   /// Of a metre on four wheels, beside the metre itself.
   [[nodiscard]] double off_nominal_cost(const PathLayer& layer, int z, int pitch) const;

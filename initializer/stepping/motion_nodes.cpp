@@ -15,7 +15,6 @@ namespace {
 constexpr double kRounding = 1e-6;
 constexpr double kStandstillM = 1e-9;
 constexpr double kMaxSlipM_s = 0.25;  // of a standing tyre along its axle
-constexpr double kTreadErrorM = 0.017;
 constexpr double kLegSpacingM = 0.1;  // between the points of a leg held against the ground
 
 double travel_m(const Eigen::Vector3d& moved, const Eigen::Vector3d& axle_world, bool grounded) {
@@ -23,27 +22,6 @@ double travel_m(const Eigen::Vector3d& moved, const Eigen::Vector3d& axle_world,
   if (!grounded) return moved.dot(forward);
   const Eigen::Vector3d rolled = moved - moved.dot(axle_world) * axle_world;
   return std::copysign(rolled.norm(), rolled.dot(forward));
-}
-
-// How far a tyre's tread is above the ground, negative: in it. The rest of a disc on rough ground
-// is an approximation.
-double tread_clearance_m(const TerrainMap& terrain, const Eigen::Vector3d& p_world_wheel,
-                         const Eigen::Vector3d& axle, const WheeledLeg& leg) {
-  constexpr int kAngles = 15, kWidths = 3;
-  constexpr double kHalfAngleRad = 1.0;
-  const Eigen::Vector3d down = (axle.z() * axle - Eigen::Vector3d::UnitZ()).normalized();
-  const Eigen::Vector3d forward = down.cross(axle);
-  double least_m = 1e9;
-  for (int i = 0; i < kAngles; ++i) {
-    const double angle = kHalfAngleRad * (2.0 * i / (kAngles - 1) - 1.0);
-    const Eigen::Vector3d middle =
-        p_world_wheel + leg.radius_m * (std::cos(angle) * down + std::sin(angle) * forward);
-    for (int j = 0; j < kWidths; ++j) {
-      const Eigen::Vector3d p = middle + leg.half_width_m * (2.0 * j / (kWidths - 1) - 1.0) * axle;
-      least_m = std::min(least_m, p.z() - terrain.height_m(p.head<2>()));
-    }
-  }
-  return least_m;
 }
 
 const CollisionModel::Capsule* leg_in_ground(const TerrainMap& terrain,
@@ -105,6 +83,7 @@ std::optional<NodeFault> find_fault(const TerrainMap& terrain, const MachineMode
                                     const CollisionModel& collision,
                                     const std::vector<MotionNode>& nodes, double min_margin_m) {
   KinematicTree::Workspace w = machine.tree.make_workspace();
+  const auto height_at = [&](double x, double y) { return terrain.height_m({x, y}); };
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const MotionNode& node = nodes[i];
     for (int j = 0; j < machine.num_joints(); ++j) {
@@ -123,7 +102,8 @@ std::optional<NodeFault> find_fault(const TerrainMap& terrain, const MachineMode
       const WheeledLeg& leg = machine.legs[k];
       const Eigen::Vector3d p = machine.tree.position(w, leg.carrier_body, leg.p_carrier_wheel);
       const Eigen::Vector3d axle = machine.tree.direction(w, leg.carrier_body, leg.axle_carrier);
-      if (!(std::abs(tread_clearance_m(terrain, p, axle, leg)) <= kTreadErrorM)) {
+      if (!(std::abs(tread_clearance_m(height_at, p, axle, leg.radius_m, leg.half_width_m)) <=
+            kTreadErrorM)) {
         return NodeFault{
             i, "the tyre of leg " + std::string(kLimbNames[k]) + " is not quite on the ground"};
       }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "initializer/stepping/stance_polygon.hpp"
+#include "initializer/stepping/tyre_patch.hpp"
 
 namespace wex {
 namespace {
@@ -199,6 +200,7 @@ LegFault StanceCheck::lower_leg(const BaseFrame& base, const LegSweep& sweep, in
     }
     p_base = above.p_base_wheel + share * (sample.p_base_wheel - above.p_base_wheel);
     stance.p_world_wheel[i] = world(p_base);
+    stance.axle_world[i] = axle;
     stance.p_world_patch[i] =
         stance.p_world_wheel[i] - radius_m / cosine * in_wheel -
         std::copysign(patch_shift_m(tilt, tables_->half_width_m[i]), along_axle) * axle;
@@ -233,6 +235,18 @@ Stance StanceCheck::stance(const BaseFrame& base, int steering,
     }
   }
   return stance;
+}
+
+bool StanceCheck::tyres_rest(const Stance& stance, std::uint8_t lifted) const noexcept {
+  const auto height_at = [&](double x, double y) { return ground_->height_m(x, y); };
+  for (std::size_t i = 0; i < kNumWheels; ++i) {
+    if ((lifted >> i & 1U) != 0) continue;
+    const double clearance_m =
+        tread_clearance_m(height_at, stance.p_world_wheel[i], stance.axle_world[i],
+                          tables_->radius_m[i], tables_->half_width_m[i]);
+    if (std::abs(clearance_m) > kTreadErrorM) return false;
+  }
+  return true;
 }
 
 Eigen::Vector3d StanceCheck::moment_of_legs(const Stance& stance,

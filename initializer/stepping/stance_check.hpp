@@ -51,6 +51,7 @@ struct Stance {
   std::array<LegFault, kNumWheels> fault{};
   std::array<Eigen::Vector3d, kNumWheels> p_world_wheel;  ///< standing wheels' centres
   std::array<Eigen::Vector3d, kNumWheels> p_world_patch;  ///< where their tyres touch
+  std::array<Eigen::Vector3d, kNumWheels> axle_world;     ///< of standing wheels
   std::array<Eigen::Vector3d, kNumWheels> moment_grounded_base, moment_lifted_base;  ///< [kg m]
 
   /// All wheels can stand but those lifted, and those are clear.
@@ -74,6 +75,10 @@ class StanceCheck {
   /// wheel_rest.
   [[nodiscard]] Stance stance(const BaseFrame& base, int steering,
                               const StanceClearances& clearances) const noexcept;
+
+  /// The treads of the wheels that carry are on the ground as the map draws it: the rest of a disc
+  /// is an approximation. About 0.2 µs a wheel.
+  [[nodiscard]] bool tyres_rest(const Stance& stance, std::uint8_t lifted) const noexcept;
 
   /// Smallest margin on four wheels over all cabin yaws, arm folded [m].
   [[nodiscard]] double margin_on_wheels(const BaseFrame& base, const Stance& stance) const noexcept;

@@ -54,6 +54,7 @@ class MotionBuilder {
   Done raise_legs_clear(BaseRun& run);
   // As the machine stands in workspace_, of the ground.
   bool leg_clear(std::size_t leg, double clearance_m, bool claw_only) const;
+  bool tyre_rests(std::size_t wheel) const;
   std::optional<std::string> judge(const BaseRun& run, const BaseKnot& knot);
   Result<std::vector<BucketStance>, MotionFailure> stances(const BaseRun& run);
 

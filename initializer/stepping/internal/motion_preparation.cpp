@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "initializer/stepping/internal/motion_builder.hpp"
+#include "initializer/stepping/tyre_patch.hpp"
 
 namespace wex {
 namespace {
@@ -54,6 +55,18 @@ bool MotionBuilder::leg_clear(std::size_t leg, double clearance_m, bool claw_onl
   return true;
 }
 
+bool MotionBuilder::tyre_rests(std::size_t wheel) const {
+  constexpr double kReserveM = 0.001;  // for what is between knots
+  const WheeledLeg& leg = parts_.machine.legs[wheel];
+  const KinematicTree& tree = parts_.machine.tree;
+  const auto height_at = [&](double x, double y) { return parts_.terrain.height_m({x, y}); };
+  const double clearance_m =
+      tread_clearance_m(height_at, tree.position(workspace_, leg.carrier_body, leg.p_carrier_wheel),
+                        tree.direction(workspace_, leg.carrier_body, leg.axle_carrier),
+                        leg.radius_m, leg.half_width_m);
+  return std::abs(clearance_m) <= kTreadErrorM - kReserveM;
+}
+
 std::optional<std::string> MotionBuilder::judge(const BaseRun& run, const BaseKnot& knot) {
   Hips upper{};
   for (int i = 0; i < kNumWheels; ++i) {
@@ -67,6 +80,10 @@ std::optional<std::string> MotionBuilder::judge(const BaseRun& run, const BaseKn
       posture({knot.base, knot.curvature_1_m}, *placement, parts_.arm.transport()), workspace_);
   for (int i = 0; i < kNumWheels; ++i) {
     if ((lifted >> i & 1) == 0) {
+      if (!tyre_rests(static_cast<std::size_t>(i))) {
+        return "the tyre of leg " + std::string(kLimbNames[static_cast<std::size_t>(i)]) +
+               " is not quite on the ground";
+      }
       if (!leg_clear(static_cast<std::size_t>(i), kStandingClawClearM, true)) {
         return "the claw of leg " + std::string(kLimbNames[static_cast<std::size_t>(i)]) +
                " is too close to the ground";
