@@ -19,12 +19,15 @@ class Recheck {
   Recheck(const RecheckedPlan& rechecked, const PlanSettings& settings)
       : r_(rechecked), settings_(settings), workspace_(rechecked.machine.tree.make_workspace()) {}
 
-  [[nodiscard]] bool sound(const Eigen::VectorXd& q, const ContactFlags& contacts) {
+  /// parts  bit: CollisionModel::Part, those to be looked at
+  [[nodiscard]] bool sound(const Eigen::VectorXd& q, const ContactFlags& contacts, unsigned parts) {
+    parts_ = parts;
     r_.machine.tree.update(q, workspace_);
     return wheels_sound(contacts) && links_sound(contacts);
   }
 
  private:
+  [[nodiscard]] bool asked_for(std::size_t part) const { return (parts_ >> part & 1U) != 0; }
   // Not closer to the ground than it was, or still beyond its clearance.
   [[nodiscard]] static bool kept(double before_m, double after_m, double clearance_m) {
     return after_m >= std::min(before_m, clearance_m) - kRoundingM;
@@ -32,6 +35,7 @@ class Recheck {
 
   [[nodiscard]] bool wheels_sound(const ContactFlags& contacts) const {
     for (std::size_t i = 0; i < kNumWheels; ++i) {
+      if (!asked_for(i + static_cast<std::size_t>(CollisionModel::Part::kLF))) continue;
       const WheeledLeg& leg = r_.machine.legs[i];
       const Eigen::Vector3d p =
           r_.machine.tree.position(workspace_, leg.carrier_body, leg.p_carrier_wheel);
@@ -63,6 +67,7 @@ class Recheck {
     const bool bucket_stands = contacts[static_cast<std::size_t>(Limb::kArm)];
     for (std::size_t c = 0; c < r_.shape.capsules().size(); ++c) {
       const CollisionModel::Capsule& capsule = r_.shape.capsules()[c];
+      if (!asked_for(static_cast<std::size_t>(capsule.part))) continue;
       const bool on_arm = capsule.part == Part::kArm;
       // Tyres were looked at as discs; a bucket that stands touches the ground.
       if (capsule.load_bearing && (!on_arm || bucket_stands)) continue;
@@ -85,6 +90,7 @@ class Recheck {
   const PlanSettings& settings_;
   const SteppingMotionSettings motion_;
   KinematicTree::Workspace workspace_;
+  unsigned parts_ = ~0U;
 };
 
 }  // namespace
@@ -103,8 +109,12 @@ std::vector<std::size_t> unsound_on_changed_ground(const RecheckedPlan& rechecke
       continue;
     }
     const bool is_last = i + 1 == all.size();
-    const bool sound = recheck.sound(all[i].q, all[i].contacts) &&
-                       (is_last || recheck.sound(0.5 * (all[i].q + all[i + 1].q), all[i].contacts));
+    const unsigned parts = rechecked.change != nullptr && rechecked.reach != nullptr
+                               ? touched_parts(*rechecked.reach, *rechecked.change, i)
+                               : ~0U;
+    const bool sound =
+        recheck.sound(all[i].q, all[i].contacts, parts) &&
+        (is_last || recheck.sound(0.5 * (all[i].q + all[i + 1].q), all[i].contacts, parts));
     if (!sound) result.push_back(i);
   }
   return result;

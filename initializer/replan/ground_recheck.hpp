@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "initializer/make_plan.hpp"
+#include "initializer/replan/ground_change.hpp"
+#include "initializer/replan/node_reach.hpp"
 #include "models/excavator/collision_model.hpp"
 #include "models/excavator/machine_model.hpp"
 #include "models/terrain/terrain_map.hpp"
@@ -18,6 +20,9 @@ struct RecheckedPlan {
   const CollisionModel& shape;
   const TerrainMap& before;
   const TerrainMap& after;
+  /// Parts of the machine whose ground has not changed need no second look; null: all get one.
+  const std::vector<NodeReach>* reach = nullptr;
+  const GroundChange* change = nullptr;
 };
 
 /// Those of some nodes that the ground after does not allow: what verify_plan refuses at them; and

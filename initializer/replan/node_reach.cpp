@@ -56,19 +56,25 @@ std::vector<NodeReach> reach_of(const MachineModel& machine, const CollisionMode
   return all;
 }
 
+unsigned touched_parts(const std::vector<NodeReach>& reach, const GroundChange& change,
+                       std::size_t node) {
+  const NodeReach& before = reach[node > 0 ? node - 1 : node];
+  const NodeReach& after = reach[node + 1 < reach.size() ? node + 1 : node];
+  unsigned parts = 0;
+  for (std::size_t part = 0; part < reach[node].size(); ++part) {
+    if (change.meets(reach[node][part].united(before[part]).united(after[part]))) {
+      parts |= 1U << part;
+    }
+  }
+  return parts;
+}
+
 std::vector<std::size_t> touched_nodes(const std::vector<NodeReach>& reach,
                                        const GroundChange& change) {
   std::vector<std::size_t> touched;
   if (change.none()) return touched;
   for (std::size_t i = 0; i < reach.size(); ++i) {
-    const NodeReach& before = reach[i > 0 ? i - 1 : i];
-    const NodeReach& after = reach[i + 1 < reach.size() ? i + 1 : i];
-    for (std::size_t part = 0; part < reach[i].size(); ++part) {
-      if (change.meets(reach[i][part].united(before[part]).united(after[part]))) {
-        touched.push_back(i);
-        break;
-      }
-    }
+    if (touched_parts(reach, change, i) != 0) touched.push_back(i);
   }
   return touched;
 }

@@ -18,6 +18,11 @@ using NodeReach = std::array<GroundRect, CollisionModel::kNumParts>;
                                               const CollisionModel& shape,
                                               const std::vector<WholeBodyNode>& nodes);
 
+/// The parts (bit: CollisionModel::Part) whose ground at a node, or on the way to or from it, has
+/// changed.
+[[nodiscard]] unsigned touched_parts(const std::vector<NodeReach>& reach,
+                                     const GroundChange& change, std::size_t node);
+
 /// The nodes whose ground, or the ground on the way to or from them, has changed; ascending.
 [[nodiscard]] std::vector<std::size_t> touched_nodes(const std::vector<NodeReach>& reach,
                                                      const GroundChange& change);

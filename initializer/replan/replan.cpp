@@ -46,8 +46,9 @@ class Replanner {
     const std::vector<std::size_t> touched = touched_nodes(before_.reach, *change);
     num_touched_ = touched.size();
     if (touched.empty()) return kept(ReplanOutcome::kUntouched);
-    unsound_ = unsound_on_changed_ground(
-        {before_.plan, machine_, *before_.shape, before_.terrain, terrain_}, touched, settings_);
+    unsound_ = unsound_on_changed_ground({before_.plan, machine_, *before_.shape, before_.terrain,
+                                          terrain_, &before_.reach, &*change},
+                                         touched, settings_);
     if (unsound_.empty()) return kept(ReplanOutcome::kStillGood);
 
     check_.emplace(terrain_, machine_, settings_, before_.legs);
