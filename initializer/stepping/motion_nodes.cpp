@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <utility>
 
@@ -24,17 +25,49 @@ double travel_m(const Eigen::Vector3d& moved, const Eigen::Vector3d& axle_world,
   return std::copysign(rolled.norm(), rolled.dot(forward));
 }
 
-const CollisionModel::Capsule* leg_in_ground(const TerrainMap& terrain,
+// Whether any point of a ball's lower half is in the ground: beside a step its flank can be while
+// its middle is not.
+bool ball_in_ground(const TerrainMap& terrain, const Eigen::Vector3d& centre, double radius_m) {
+  constexpr int kDirections = 8, kRings = 3;
+  constexpr double kRingRad = 0.5;
+  if (!(centre.z() - radius_m >= terrain.height_m(centre.head<2>()))) return true;
+  for (int ring = 1; ring <= kRings; ++ring) {
+    const double down_m = radius_m * std::cos(ring * kRingRad),
+                 out_m = radius_m * std::sin(ring * kRingRad);
+    for (int k = 0; k < kDirections; ++k) {
+      const double angle = 2.0 * std::numbers::pi * k / kDirections;
+      const Eigen::Vector2d p =
+          centre.head<2>() + out_m * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+      if (!(centre.z() - down_m >= terrain.height_m(p))) return true;
+    }
+  }
+  return false;
+}
+
+bool capsule_in_ground(const TerrainMap& terrain, const CollisionModel::Capsule& capsule,
+                       const KinematicTree::Workspace& w) {
+  const Eigen::Isometry3d& T = w.T_world_body[static_cast<std::size_t>(capsule.body)];
+  const Eigen::Vector3d a = T * capsule.p_body_a, b = T * capsule.p_body_b;
+  const int steps = static_cast<int>((b - a).norm() / kLegSpacingM) + 1;
+  for (int k = 0; k <= steps; ++k) {
+    const Eigen::Vector3d p = a + (b - a) * (static_cast<double>(k) / steps);
+    if (ball_in_ground(terrain, p, capsule.radius_m)) return true;
+  }
+  return false;
+}
+
+const CollisionModel::Capsule* leg_in_ground(const TerrainMap& terrain, const StanceGround& ground,
                                              const CollisionModel& collision,
                                              const KinematicTree::Workspace& w) {
   using Part = CollisionModel::Part;
-  const auto height_at = [&](const Eigen::Vector2d& p) { return terrain.height_m(p); };
+  // Of the cells around, so that most capsules need no closer look.
+  const auto highest_at = [&](const Eigen::Vector2d& p) { return ground.highest_m(p.x(), p.y()); };
   for (std::size_t c = 0; c < collision.capsules().size(); ++c) {
     const CollisionModel::Capsule& capsule = collision.capsules()[c];
     if (capsule.load_bearing || capsule.part < Part::kLF || capsule.part > Part::kRH) continue;
-    if (!(collision.ground_clearance_m(w, static_cast<int>(c), kLegSpacingM, height_at) >= 0.0)) {
-      return &capsule;
-    }
+    const double least_m =
+        collision.ground_clearance_m(w, static_cast<int>(c), kLegSpacingM, highest_at);
+    if (!(least_m >= 0.0) && capsule_in_ground(terrain, capsule, w)) return &capsule;
   }
   return nullptr;
 }
@@ -79,8 +112,8 @@ void turn_wheels(const MachineModel& machine, std::vector<MotionNode>& nodes) {
   }
 }
 
-std::optional<NodeFault> find_fault(const TerrainMap& terrain, const MachineModel& machine,
-                                    const CollisionModel& collision,
+std::optional<NodeFault> find_fault(const TerrainMap& terrain, const StanceGround& ground,
+                                    const MachineModel& machine, const CollisionModel& collision,
                                     const std::vector<MotionNode>& nodes, double min_margin_m) {
   KinematicTree::Workspace w = machine.tree.make_workspace();
   const auto height_at = [&](double x, double y) { return terrain.height_m({x, y}); };
@@ -120,7 +153,7 @@ std::optional<NodeFault> find_fault(const TerrainMap& terrain, const MachineMode
     if (!(margin_m >= min_margin_m)) {
       return NodeFault{i, "only " + std::to_string(margin_m) + " m of stability"};
     }
-    if (const auto* capsule = leg_in_ground(terrain, collision, w)) {
+    if (const auto* capsule = leg_in_ground(terrain, ground, collision, w)) {
       return NodeFault{i, capsule->name + " is in the ground"};
     }
   }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "initializer/stepping/stance_ground.hpp"
 #include "initializer/stepping/stepping_timing.hpp"
 #include "models/excavator/collision_model.hpp"
 #include "models/excavator/machine_model.hpp"
@@ -18,14 +19,13 @@ void turn_wheels(const MachineModel& machine, std::vector<MotionNode>& nodes);
 
 /// The first node that breaks a limit of a joint or of stability on its scheduled contacts, or has
 /// a leg in the ground.
+///   ground  of the terrain
 struct NodeFault {
   std::size_t node = 0;
   std::string why;
 };
-[[nodiscard]] std::optional<NodeFault> find_fault(const TerrainMap& terrain,
-                                                  const MachineModel& machine,
-                                                  const CollisionModel& collision,
-                                                  const std::vector<MotionNode>& nodes,
-                                                  double min_margin_m);
+[[nodiscard]] std::optional<NodeFault> find_fault(
+    const TerrainMap& terrain, const StanceGround& ground, const MachineModel& machine,
+    const CollisionModel& collision, const std::vector<MotionNode>& nodes, double min_margin_m);
 
 }  // namespace wex

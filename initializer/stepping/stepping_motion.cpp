@@ -53,7 +53,8 @@ Result<std::vector<WholeBodyNode>, MotionFailure> SteppingMotion::nodes(
   const MachineModel& machine = impl_->parts.machine;
   turn_wheels(machine, nodes);
   constexpr double kRoundingM = 2e-3;  // margins were judged before nodes were put between knots
-  if (const auto fault = find_fault(impl_->parts.terrain, machine, impl_->parts.collision, nodes,
+  if (const auto fault = find_fault(impl_->parts.terrain, impl_->parts.placer.ground(), machine,
+                                    impl_->parts.collision, nodes,
                                     impl_->parts.settings.min_stability_margin_m - kRoundingM)) {
     return tl::unexpected<MotionFailure>({nodes[fault->node].state, fault->why});
   }
