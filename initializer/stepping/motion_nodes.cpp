@@ -72,6 +72,75 @@ const CollisionModel::Capsule* leg_in_ground(const TerrainMap& terrain, const St
   return nullptr;
 }
 
+// Wheels in the air away from where they stood last and will stand next, at nodes and half-way
+// between them.
+class SwingCheck {
+ public:
+  SwingCheck(const TerrainMap& terrain, const MachineModel& machine,
+             const std::vector<MotionNode>& nodes, double clearance_m)
+      : terrain_(terrain),
+        machine_(machine),
+        nodes_(nodes),
+        clearance_m_(clearance_m),
+        w_(machine.tree.make_workspace()) {}
+
+  [[nodiscard]] std::optional<NodeFault> run() {
+    for (std::size_t k = 0; k < kNumWheels; ++k) {
+      for (std::size_t i = 1; i < nodes_.size(); ++i) {
+        if (nodes_[i].contacts[k] || !nodes_[i - 1].contacts[k]) continue;
+        const std::size_t from = i;
+        while (i + 1 < nodes_.size() && !nodes_[i].contacts[k]) ++i;
+        if (auto fault = in_flight(k, from, i)) return fault;
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  [[nodiscard]] Eigen::Vector3d centre(std::size_t wheel, const Eigen::VectorXd& q) {
+    const WheeledLeg& leg = machine_.legs[wheel];
+    machine_.tree.update(q, w_);
+    return machine_.tree.position(w_, leg.carrier_body, leg.p_carrier_wheel);
+  }
+
+  // At node `from` the wheel has only just left the ground, at `to` it is on it again.
+  [[nodiscard]] std::optional<NodeFault> in_flight(std::size_t wheel, std::size_t from,
+                                                   std::size_t to) {
+    constexpr double kFootholdM = 0.28;  // beyond which the wheel swings
+    constexpr int kAngles = 21;
+    constexpr double kHalfAngleRad = 1.4, kBetweenAnglesM = 0.002;
+    const WheeledLeg& leg = machine_.legs[wheel];
+    const Eigen::Vector3d spot_from = centre(wheel, nodes_[from].q);
+    const Eigen::Vector3d spot_to = centre(wheel, nodes_[to].q);
+    const auto height_at = [&](double x, double y) { return terrain_.height_m({x, y}); };
+    for (std::size_t i = from; i < to; ++i) {
+      const Eigen::VectorXd half_way = 0.5 * (nodes_[i].q + nodes_[i + 1].q);
+      for (const Eigen::VectorXd* q : {&nodes_[i].q, &half_way}) {
+        const Eigen::Vector3d p = centre(wheel, *q);
+        if ((p - spot_from).head<2>().norm() < kFootholdM ||
+            (p - spot_to).head<2>().norm() < kFootholdM) {
+          continue;
+        }
+        const Eigen::Vector3d axle =
+            machine_.tree.direction(w_, leg.carrier_body, leg.axle_carrier);
+        const double clear_m = tread_clearance_m(height_at, p, axle, leg.radius_m, leg.half_width_m,
+                                                 kAngles, kHalfAngleRad);
+        if (!(clear_m >= clearance_m_ + kBetweenAnglesM)) {
+          return NodeFault{
+              i, "wheel " + std::string(kLimbNames[wheel]) + " swings too close to the ground"};
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
+  const TerrainMap& terrain_;
+  const MachineModel& machine_;
+  const std::vector<MotionNode>& nodes_;
+  double clearance_m_;
+  KinematicTree::Workspace w_;
+};
+
 }  // namespace
 
 void turn_wheels(const MachineModel& machine, std::vector<MotionNode>& nodes) {
@@ -114,7 +183,9 @@ void turn_wheels(const MachineModel& machine, std::vector<MotionNode>& nodes) {
 
 std::optional<NodeFault> find_fault(const TerrainMap& terrain, const StanceGround& ground,
                                     const MachineModel& machine, const CollisionModel& collision,
-                                    const std::vector<MotionNode>& nodes, double min_margin_m) {
+                                    const std::vector<MotionNode>& nodes, double min_margin_m,
+                                    double swing_clearance_m) {
+  if (auto fault = SwingCheck(terrain, machine, nodes, swing_clearance_m).run()) return fault;
   KinematicTree::Workspace w = machine.tree.make_workspace();
   const auto height_at = [&](double x, double y) { return terrain.height_m({x, y}); };
   for (std::size_t i = 0; i < nodes.size(); ++i) {

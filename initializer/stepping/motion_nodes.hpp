@@ -17,15 +17,18 @@ namespace wex {
 /// a standing wheel slips sideways are given the time for it.
 void turn_wheels(const MachineModel& machine, std::vector<MotionNode>& nodes);
 
-/// The first node that breaks a limit of a joint or of stability on its scheduled contacts, or has
-/// a leg in the ground.
+/// The first node that breaks a limit of a joint or of stability on its scheduled contacts, has a
+/// leg in the ground, or swings a wheel too close to it.
 ///   ground  of the terrain
 struct NodeFault {
   std::size_t node = 0;
   std::string why;
 };
-[[nodiscard]] std::optional<NodeFault> find_fault(
-    const TerrainMap& terrain, const StanceGround& ground, const MachineModel& machine,
-    const CollisionModel& collision, const std::vector<MotionNode>& nodes, double min_margin_m);
+[[nodiscard]] std::optional<NodeFault> find_fault(const TerrainMap& terrain,
+                                                  const StanceGround& ground,
+                                                  const MachineModel& machine,
+                                                  const CollisionModel& collision,
+                                                  const std::vector<MotionNode>& nodes,
+                                                  double min_margin_m, double swing_clearance_m);
 
 }  // namespace wex

@@ -55,7 +55,8 @@ Result<std::vector<WholeBodyNode>, MotionFailure> SteppingMotion::nodes(
   constexpr double kRoundingM = 2e-3;  // margins were judged before nodes were put between knots
   if (const auto fault = find_fault(impl_->parts.terrain, impl_->parts.placer.ground(), machine,
                                     impl_->parts.collision, nodes,
-                                    impl_->parts.settings.min_stability_margin_m - kRoundingM)) {
+                                    impl_->parts.settings.min_stability_margin_m - kRoundingM,
+                                    impl_->parts.motion.swing_clearance_m)) {
     return tl::unexpected<MotionFailure>({nodes[fault->node].state, fault->why});
   }
   const std::vector<double> t_s = node_times_s(

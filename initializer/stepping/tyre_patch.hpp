@@ -19,19 +19,20 @@ namespace wex {
 /// How far a tyre's tread is above the ground at its lowest, negative: in it [m]. That of a wheel
 /// put to rest as a disc, which on rough ground is an approximation, may be kTreadErrorM off.
 ///   height_at(x, y)  of the ground as the map draws it
+///   num_angles  across the tread, over `half_angle_rad` to both sides of its lowest point
 template <typename HeightAt>
 [[nodiscard]] double tread_clearance_m(const HeightAt& height_at,
                                        const Eigen::Vector3d& p_world_wheel,
                                        const Eigen::Vector3d& axle_world, double radius_m,
-                                       double half_width_m) noexcept {
-  constexpr int kAngles = 15, kWidths = 3;
-  constexpr double kHalfAngleRad = 1.0;
+                                       double half_width_m, int num_angles = 15,
+                                       double half_angle_rad = 1.0) noexcept {
+  constexpr int kWidths = 3;
   const Eigen::Vector3d down =
       (axle_world.z() * axle_world - Eigen::Vector3d::UnitZ()).normalized();
   const Eigen::Vector3d forward = down.cross(axle_world);
   double least_m = 1e9;
-  for (int i = 0; i < kAngles; ++i) {
-    const double angle = kHalfAngleRad * (2.0 * i / (kAngles - 1) - 1.0);
+  for (int i = 0; i < num_angles; ++i) {
+    const double angle = half_angle_rad * (2.0 * i / (num_angles - 1) - 1.0);
     const Eigen::Vector3d middle =
         p_world_wheel + radius_m * (std::cos(angle) * down + std::sin(angle) * forward);
     for (int j = 0; j < kWidths; ++j) {
