@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "models/excavator/collision_model.hpp"
 #include "models/terrain/wheel_rest.hpp"
 
 namespace wex {
@@ -20,7 +21,7 @@ constexpr double kBucketToleranceM = 0.02;
 constexpr double kBucketSlipM = 0.01;
 constexpr double kPoseTolerance = 1e-4;  // m and rad, at both ends
 constexpr double kRounding = 1e-6;       // relative or absolute slack for sums of doubles
-constexpr double kBellySpacingM = 0.2;
+constexpr double kBellySpacingM = 0.2, kArmSpacingM = 0.2;
 
 std::string with_number(const std::string& text, double value) {
   char number[32];
@@ -34,6 +35,8 @@ class Verifier {
       : terrain_(terrain),
         machine_(machine),
         settings_(settings),
+        shape_(CollisionModel::build(machine)),
+        transport_(machine.transport_posture()),
         workspace_(machine.tree.make_workspace()) {}
 
   // The first violation of a node by itself.
@@ -55,7 +58,8 @@ class Verifier {
       }
     }
     if (auto contact = contact_violation(node.contacts, verdict)) return contact;
-    return belly_violation();
+    if (auto belly = belly_violation()) return belly;
+    return carried_arm_violation(node);
   }
 
   // The bucket of a node that was just looked at.
@@ -155,9 +159,38 @@ class Verifier {
     return std::nullopt;
   }
 
+  // The arm as it is carried while driving; where it moves, its paths were checked as it did.
+  std::optional<std::string> carried_arm_violation(const WholeBodyNode& node) const {
+    if (!machine_.arm) return std::nullopt;
+    const auto height_at = [&](const Eigen::Vector2d& p) { return terrain_.height_m(p); };
+    for (std::size_t c = 0; c < shape_.capsules().size(); ++c) {
+      const CollisionModel::Capsule& capsule = shape_.capsules()[c];
+      if (capsule.part != CollisionModel::Part::kArm) continue;
+      const double clearance_m =
+          shape_.ground_clearance_m(workspace_, static_cast<int>(c), kArmSpacingM, height_at);
+      if (clearance_m < 0.0 && is_carried(node)) {
+        return with_number(capsule.name + " in the ground [m]:", clearance_m);
+      }
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] bool is_carried(const WholeBodyNode& node) const {
+    if (node.contacts[static_cast<std::size_t>(Limb::kArm)]) return false;
+    for (const int c : machine_.arm->coordinates) {
+      const int j = c - kNumBaseCoordinates;
+      double off = node.q[c] - transport_[j];
+      if (machine_.joints[static_cast<std::size_t>(j)].continuous) off = wrap_angle(off);
+      if (std::abs(off) > kPoseTolerance) return false;
+    }
+    return true;
+  }
+
   const TerrainMap& terrain_;
   const MachineModel& machine_;
   const PlanSettings& settings_;
+  CollisionModel shape_;
+  Eigen::VectorXd transport_;
   KinematicTree::Workspace workspace_;
 };
 
