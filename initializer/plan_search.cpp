@@ -213,15 +213,17 @@ Result<void> PlanSearch::try_direct_paths() {
   };
   for (const DrivePath& path : direct) {
     if (path_is_valid(path, settings_.subnode_spacing_m, drivable)) consider_driving(path);
-    if (best_) return {};  // the others cost more
+    if (best_) break;  // the others cost more
   }
-  if (!may_step()) return {};
+  // Stepping may be cheaper than a detour.
+  if (!may_step() || out_of_budget()) return {};
   if (auto built = build_certifier(); !built) return built;
   if (!settings_.ablation.certificate_first) return {};
   for (const DrivePath& path : direct) {
     if (aids_.hopeless && same_way(path, *aids_.hopeless)) continue;
     if (consider_stepping(path)) return {};
   }
+  if (best_) return {};  // by driving: the trees have the rest of the budget
   if (!settings_.ablation.alignment) return {};
   constexpr std::size_t kMaxSquaredPaths = 6;
   const PoseFootholds footholds = [this](const Pose2& pose, double curvature_1_m) {

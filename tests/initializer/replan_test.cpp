@@ -270,10 +270,10 @@ TEST(Replan, NodesThatAreNotTouchedAreAsSoundAsBefore) {
     const auto touched = touched_nodes(over_gap().reach, *change);
     const auto unsound = unsound_on_changed_ground(
         {over_gap().plan, test_machine(), *over_gap().shape, over_gap().terrain, after}, all, {});
-    const auto unsound_of_parts = unsound_on_changed_ground(
-        {over_gap().plan, test_machine(), *over_gap().shape, over_gap().terrain, after,
-         &over_gap().reach, &*change},
-        all, {});
+    const auto unsound_of_parts =
+        unsound_on_changed_ground({over_gap().plan, test_machine(), *over_gap().shape,
+                                   over_gap().terrain, after, &over_gap().reach, &*change},
+                                  all, {});
     EXPECT_EQ(unsound_of_parts, unsound);
     num_unsound += unsound.size();
     EXPECT_THAT(touched, testing::IsSupersetOf(unsound));

@@ -89,6 +89,19 @@ TEST_F(VerifyPlan, SeesGroundThatIsNotTraversable) {
               HasSubstr("untraversable ground"));
 }
 
+TEST_F(VerifyPlan, SeesTheCarriedBucketRunIntoAPillarBetweenTheWheels) {
+  // At the goal the bucket is carried 5.5 to 6.3 m along x, its underside 0.7 m above the base.
+  const double base_m = plan_.nodes.back().q[kBaseZ];
+  const auto pillar = [&](double height_m) {
+    return make_map(40.0, 30.0, [height_m](double x, double y) {
+      return x > 5.75 && x < 6.05 && y > -0.45 && y < 0.05 ? height_m : 0.0;
+    });
+  };
+  EXPECT_TRUE(verify_plan(pillar(base_m + 0.5), test_machine(), plan_).ok);
+  EXPECT_THAT(verify_plan(pillar(base_m + 0.9), test_machine(), plan_).violation,
+              HasSubstr("cutting_edge in the ground"));
+}
+
 TEST_F(VerifyPlan, SeesValuesThatAreNotNumbers) {
   plan_.nodes[2].q[kBaseX] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(verdict().violation, HasSubstr("not finite"));
