@@ -126,6 +126,11 @@ void add_bench(CLI::App& app, BenchOptions& options) {
       ->capture_default_str();
   add_initializer_bench(command, options.initializer);
   add_bridge_bench(command, options.bridge);
+  CLI::App& supports = *command.add_subcommand(
+      "supports", "Where the machine could only stand on supports that are not planned");
+  supports.add_option("--seeds", options.supports.seeds, "Seeds per ground")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   CLI::App& algorithm2 = *command.add_subcommand(
       "algorithm2", "Checks per second of the paper's Algorithm 2, beside the plain loop");
   algorithm2.add_option("--repeats", options.algorithm2.repeats, "Repeats of each")
@@ -182,6 +187,10 @@ int bench_command(const CLI::App& command, const BenchOptions& options, std::ost
   if (name == "mpc") return bench_mpc();
   if (name == "initializer") return initializer_bench_command(options.initializer, out, err);
   if (name == "bridge") return bridge_bench_command(options.bridge, out, err);
+  if (name == "supports") {
+    const Result<void> done = bench_supports(options.supports, out);
+    return done ? 0 : refuse(err, done.error());
+  }
   if (name == "algorithm2") {
     const Result<void> done = bench_algorithm2(options.algorithm2, out);
     return done ? 0 : refuse(err, done.error());

@@ -10,6 +10,7 @@
 #include "tools/bench/initializer_bench.hpp"
 #include "tools/bench/replan_bench.hpp"
 #include "tools/bench/roadmap_bench.hpp"
+#include "tools/bench/supports_bench.hpp"
 
 namespace wex::app {
 
@@ -21,6 +22,7 @@ struct BenchOptions {
   ReplanBenchOptions replan;
   RoadmapBenchOptions roadmap;
   Algorithm2BenchOptions algorithm2;
+  SupportsBenchOptions supports;
   BridgeBenchOptions bridge;
 };
 
