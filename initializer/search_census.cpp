@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 namespace wex {
@@ -42,6 +43,16 @@ std::vector<FailedPlace> SearchCensus::failed_places() const {
   return places;
 }
 
+std::pair<std::string, int> SearchCensus::commonest_failure() const {
+  std::map<std::string, int> counts;
+  std::pair<std::string, int> commonest;
+  for (const FailedPath& path : failed_paths_) {
+    const int count = ++counts[path.why];
+    if (count > commonest.second) commonest = {path.why, count};
+  }
+  return commonest;
+}
+
 std::string SearchCensus::sentence() const {
   const auto reasons = rejections();
   std::uint64_t num_rejected = 0;
@@ -54,9 +65,11 @@ std::string SearchCensus::sentence() const {
             std::to_string(100 * reasons[i].first / num_rejected) + " %";
   }
   if (!failed_paths_.empty()) {
+    const auto [why, count] = commonest_failure();
     text += "; " + std::to_string(failed_paths_.size()) +
-            " path(s) could not be followed with the whole body, the last because " +
-            failed_paths_.back().why;
+            " path(s) could not be followed with the whole body, " +
+            (failed_paths_.size() == 1 ? "" : "most often (" + std::to_string(count) + ") ") +
+            "because " + why;
   }
   return text;
 }

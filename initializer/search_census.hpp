@@ -48,6 +48,8 @@ class SearchCensus {
   [[nodiscard]] std::string sentence() const;
 
  private:
+  [[nodiscard]] std::pair<std::string, int> commonest_failure() const;
+
   std::uint64_t num_poses_ = 0, num_blocked_ = 0, num_unsupported_ = 0, num_askew_ = 0;
   std::array<std::uint64_t, kNumRejections> rejections_{};
   std::vector<FailedPath> failed_paths_;

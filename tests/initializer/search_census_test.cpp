@@ -38,17 +38,19 @@ TEST(SearchCensus, EveryRejectionHasItsName) {
   }
 }
 
-TEST(SearchCensus, TellsOfPathsThatFailedAndWhyTheLastDid) {
+TEST(SearchCensus, TellsOfPathsThatFailedAndWhyMostDid) {
   SearchCensus census;
   census.count_pose();
   census.count_blocked();
   census.add({{1.0, 2.0, 0.0}, "wheel LF finds no ground", true});
   census.add({{3.0, 2.0, 0.0}, "the bucket is out of reach", true});
+  census.add({{3.5, 2.0, 0.0}, "the bucket is out of reach", true});
+  census.add({{4.0, 2.0, 0.0}, "wheel RH finds no ground", true});
   EXPECT_THAT(census.sentence(),
-              Eq("1 of 1 poses tried were rejected: near a place where a path failed 100 %; 2 "
-                 "path(s) could not be followed with the whole body, the last because the bucket "
-                 "is out of reach"));
-  ASSERT_EQ(census.failed_paths().size(), 2U);
+              Eq("1 of 1 poses tried were rejected: near a place where a path failed 100 %; 4 "
+                 "path(s) could not be followed with the whole body, most often (2) because the "
+                 "bucket is out of reach"));
+  ASSERT_EQ(census.failed_paths().size(), 4U);
   EXPECT_EQ(census.failed_paths().front().where.x_m, 1.0);
 }
 
