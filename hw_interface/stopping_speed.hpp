@@ -39,7 +39,7 @@ struct StoppingSpeed {
 
 /// Angle between the base's vertical axis and the world's.
 [[nodiscard]] inline double tilt_of(double pitch_rad, double roll_rad) noexcept {
-  return std::acos(std::clamp(std::cos(pitch_rad) * std::cos(roll_rad), -1.0, 1.0));
+  return std::acos(std::cos(pitch_rad) * std::cos(roll_rad));
 }
 
 /// Joints of the arm that decide how far it reaches out: positions [rad, TELE m] or their rates.

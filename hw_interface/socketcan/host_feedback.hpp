@@ -145,7 +145,7 @@ class HostFeedback {
   double yaw_rad_ = 0.0;  ///< unwrapped
   bool operator_reset_ = false, restarted_ = false, masquerade_ = false, crc_fault_ = false;
   static constexpr int kMaxCrcErrors = 15;
-  std::array<double, kMaxCrcErrors + 1> crc_error_s_{};  ///< times of the last ones, a ring
+  std::array<double, kMaxCrcErrors> crc_error_s_{};  ///< times of the last ones, a ring
   long crc_errors_ = 0;
 };
 

@@ -55,6 +55,7 @@ TEST(TiltTest, IsTheAngleOfTheVerticalAxis) {
   EXPECT_NEAR(tilt_of(0.0, -0.3), 0.3, 1e-12);
   EXPECT_NEAR(tilt_of(0.2, 0.3), std::acos(std::cos(0.2) * std::cos(0.3)), 1e-12);
   EXPECT_EQ(tilt_of(0.0, 0.0), 0.0);
+  EXPECT_NEAR(tilt_of(180.0 * kDegree, 0.0), 180.0 * kDegree, 1e-7) << "upside down";
 }
 
 /// The model's own arm over its whole workspace.
@@ -199,6 +200,8 @@ TEST(StoppingSlewTest, AnArmThatGoesOutCountsAsBeingThere) {
   EXPECT_DOUBLE_EQ(slew.at(mid, {-0.2, 0.4, 0.2, 0.6}, 0.1),
                    slew.at(ArmReach::of({0.8, -0.2, 0.6, -1.2}), 0.1));
   EXPECT_DOUBLE_EQ(slew.at(mid, {0.2, -0.4, -0.2, 0.0}, 0.1), standing) << "going in gives nothing";
+  const ReachingJoints low{-0.4, 0.0, 0.5, -1.5};  // raised, it would reach further out
+  EXPECT_DOUBLE_EQ(slew.at(low, {}, 0.1), slew.at(ArmReach::of(low), 0.1)) << "it stands";
 }
 
 }  // namespace

@@ -41,6 +41,13 @@ TEST_F(HostAutomaton, WhatIsNotKnownIsNotGood) {
   EXPECT_EQ(in.feedback_age_s + in.status_age_s + in.estop_age_s, 0.0);
 }
 
+TEST_F(HostAutomaton, WhatNothingFollowsFromIsNeitherSentNorMoved) {
+  const HostOutputs nothing;
+  EXPECT_EQ(nothing.request, HostRequest::kNone);
+  EXPECT_EQ(nothing.session, 0U);
+  EXPECT_FALSE(nothing.send_commands || nothing.live || nothing.send_stop || nothing.silent);
+}
+
 TEST_F(HostAutomaton, AgesCountFromAMicrosecondBeforeTheirLimit) {
   struct Case {
     double HostInputs::* age;
