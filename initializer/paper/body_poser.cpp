@@ -1,6 +1,8 @@
 #include "initializer/paper/body_poser.hpp"
 
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "initializer/stepping/tyre_patch.hpp"
 
@@ -13,19 +15,20 @@ Result<BodyPoser> BodyPoser::build(const TerrainMap& terrain, const MachineModel
   if (!placer) return tl::unexpected<Error>(placer.error());
   auto arm = ArmKinematics::build(machine);
   if (!arm) return tl::unexpected<Error>(arm.error());
-  return BodyPoser(terrain, machine, roadmaps, check, *std::move(placer), *std::move(arm));
+  return BodyPoser(terrain, machine, roadmaps, check, *std::move(placer), *std::move(arm),
+                   settings.min_signed_distance_m);
 }
 
 BodyPoser::BodyPoser(const TerrainMap& terrain, const MachineModel& machine,
                      const Roadmaps& roadmaps, const PaperCheck& check, WheelPlacer placer,
-                     ArmKinematics arm)
+                     ArmKinematics arm, double min_signed_distance_m)
     : terrain_(&terrain),
       machine_(&machine),
       roadmaps_(&roadmaps),
       check_(&check),
       placer_(std::move(placer)),
       arm_(std::move(arm)),
-      inverse_(terrain, machine),
+      inverse_(terrain, machine, min_signed_distance_m),
       workspace_(machine.tree.make_workspace()) {}
 
 LegJoints BodyPoser::read_leg(const Eigen::VectorXd& q, std::size_t leg) const {
@@ -68,10 +71,17 @@ Result<LegJoints, const char*> BodyPoser::standing(const BaseCoordinates& base,
         wheel.haa < 0 ? 0.0 : machine_->transport_posture()[wheel.haa - kNumBaseCoordinates];
     return LegJoints{haa_rad, placed->hfe_rad[leg], placed->steer_rad[leg]};
   }
-  const int row = check_->ground_legs(base)[leg];
-  if (row < 0) return tl::unexpected<const char*>("has too few configurations on the ground");
-  return inverse_.rest(base, leg, curvature_1_m,
-                       vertex_joints(leg, check_->leg_table(leg).vertex(row)));
+  const char* why = "has no configuration on the ground";
+  const std::vector<int> vertices = check_->touching_vertices(base, leg);
+  for (const std::optional<double> rolling :
+       {std::optional(curvature_1_m), std::optional<double>()}) {
+    for (const int vertex : vertices) {
+      const auto joints = inverse_.rest(base, leg, rolling, vertex_joints(leg, vertex));
+      if (joints) return joints;
+      why = joints.error();
+    }
+  }
+  return tl::unexpected<const char*>(why);
 }
 
 Footing BodyPoser::footing(const Eigen::VectorXd& q, const ContactFlags& contacts) {

@@ -25,7 +25,8 @@ class BodyPoser {
 
   [[nodiscard]] LegJoints vertex_joints(std::size_t leg, int vertex) const;
   /// On the ground: hips as in transport posture if the wheel can stand so, which is where the
-  /// vertices nearest to default lead; else spread as at the vertex that touches.
+  /// vertices nearest to default lead; else spread as at the first vertex of those that touch that
+  /// can be steered to roll along the path; else steered as at the first that touches.
   [[nodiscard]] Result<LegJoints, const char*> standing(const BaseCoordinates& base,
                                                         double curvature_1_m, std::size_t leg);
   [[nodiscard]] double clearance_m(const BaseCoordinates& base, std::size_t leg,
@@ -44,7 +45,8 @@ class BodyPoser {
 
  private:
   BodyPoser(const TerrainMap& terrain, const MachineModel& machine, const Roadmaps& roadmaps,
-            const PaperCheck& check, WheelPlacer placer, ArmKinematics arm);
+            const PaperCheck& check, WheelPlacer placer, ArmKinematics arm,
+            double min_signed_distance_m);
 
   const TerrainMap* terrain_;
   const MachineModel* machine_;

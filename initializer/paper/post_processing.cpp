@@ -21,20 +21,6 @@ constexpr double kRounding = 1e-9;
 
 std::string name_of(std::size_t leg) { return "wheel " + std::string(kLimbNames[leg]); }
 
-const char* describe(ArmPathError error) {
-  switch (error) {
-    case ArmPathError::kStartInvalid:
-      return "the arm's motion would begin in collision";
-    case ArmPathError::kGoalInvalid:
-      return "the arm's motion would end in collision";
-    case ArmPathError::kNoPath:
-      return "the arm finds no way over its roadmap";
-    case ArmPathError::kTooManyChecks:
-      return "the arm finds no way over its roadmap in time";
-  }
-  return "the arm does not move";
-}
-
 }  // namespace
 
 const char* describe(PaperStage stage) noexcept {
@@ -127,11 +113,12 @@ struct PostProcessing::Impl {
   Done drive_to(std::size_t k);
   Done change_contacts(std::size_t from);
   bool can_change_at(std::size_t k, std::size_t from);
+  std::optional<LegJoints> swing_joints(std::size_t k, std::size_t leg, int vertex);
   Done change_here(std::size_t k, std::size_t from);
   Done move_arm(const ArmPosture& to);
   Done lower_bucket(std::size_t k);
   Done raise_bucket();
-  Done balance(std::size_t k, const ContactFlags& next);
+  Done balance(std::size_t k, std::size_t leg, const LegJoints& swung);
   void move_leg(std::size_t leg, const LegJoints& to, bool lifting);
   void write_arm(ArmPosture posture, Eigen::VectorXd& q) const;
   [[nodiscard]] double margin_m(const Eigen::VectorXd& q, const ContactFlags& on_ground);
@@ -164,10 +151,11 @@ PostProcessing::Impl::Done PostProcessing::Impl::place_legs(std::size_t k,
     }
     const double clear_m = check.paper().swing_clearance_m;
     if (poser.clearance_m(stance.base, i, poser.read_leg(q, i)) >= clear_m) continue;
-    if (stance.contacts[i]) {
+    const int vertex = stance.contacts[i] ? check.swing_vertex(stance.base, i) : stance.vertex[i];
+    if (vertex < 0) {
       return failure(PaperStage::kLegs, name_of(i) + " would swing through the ground");
     }
-    poser.write_leg(poser.vertex_joints(i, stance.vertex[i]), i, q);
+    poser.write_leg(poser.vertex_joints(i, vertex), i, q);
   }
   return {};
 }
@@ -217,11 +205,23 @@ PostProcessing::Impl::Done PostProcessing::Impl::move_arm(const ArmPosture& to) 
   if ((goal - q).cwiseAbs().maxCoeff() < kRounding) return {};
   const Footing footing = poser.footing(q, contacts);
   Eigen::VectorXd tried = q;
+  const auto why_not = [&](ArmPathError error) -> std::string {
+    if (error == ArmPathError::kStartInvalid || error == ArmPathError::kGoalInvalid) {
+      const bool start = error == ArmPathError::kStartInvalid;
+      const char* fault =
+          mover.fault(footing, tried, poser.arm().posture_of(start ? q : goal), false);
+      return std::string(start ? "the arm's motion would begin where "
+                               : "the arm's motion would end where ") +
+             (fault != nullptr ? fault : "it collides");
+    }
+    return error == ArmPathError::kNoPath ? "the arm finds no way over its roadmap"
+                                          : "the arm finds no way over its roadmap in time";
+  };
   const auto path = planner.plan(arm_of(q), arm_of(goal), [&](const Eigen::VectorXd& part) {
     write(part, tried);
     return mover.fault(footing, tried, poser.arm().posture_of(tried), false) == nullptr;
   });
-  if (!path) return failure(PaperStage::kArm, describe(path.error()));
+  if (!path) return failure(PaperStage::kArm, why_not(path.error()));
   nodes.back().stop = true;
   for (std::size_t i = 1; i < path->postures.size(); ++i) {
     write(path->postures[i], q);
@@ -277,10 +277,31 @@ PostProcessing::Impl::Done PostProcessing::Impl::raise_bucket() {
   return {};
 }
 
-// The arm as counterweight before a wheel leaves the ground, if it does not balance as it is.
-PostProcessing::Impl::Done PostProcessing::Impl::balance(std::size_t k, const ContactFlags& next) {
-  if (next[kArmIndex] || margin_m(now(), next) >= settings.min_stability_margin_m) return {};
+// The arm as counterweight before a wheel leaves the ground, if it does not balance as it is: with
+// the leg where it stands and where it is going to be.
+PostProcessing::Impl::Done PostProcessing::Impl::balance(std::size_t k, std::size_t leg,
+                                                         const LegJoints& swung) {
+  ContactFlags next = contacts;
+  next[leg] = false;
+  Eigen::VectorXd q = now();
+  poser.write_leg(swung, leg, q);
+  const double least_m = settings.min_stability_margin_m;
+  if (next[kArmIndex] || (margin_m(now(), next) >= least_m && margin_m(q, next) >= least_m)) {
+    return {};
+  }
   return move_arm(poser.vertex_posture(stances[k].vertex[kArmIndex]));
+}
+
+// A leg in the air at a station: at the given vertex, or at the first that is clear there.
+std::optional<LegJoints> PostProcessing::Impl::swing_joints(std::size_t k, std::size_t leg,
+                                                            int vertex) {
+  const LegJoints wanted = poser.vertex_joints(leg, vertex);
+  if (poser.clearance_m(stances[k].base, leg, wanted) >= check.paper().swing_clearance_m) {
+    return wanted;
+  }
+  const int other = check.swing_vertex(stances[k].base, leg);
+  if (other < 0) return std::nullopt;
+  return poser.vertex_joints(leg, other);
 }
 
 // Whether everything that stands before or after can stand at a station, and what swings before or
@@ -291,10 +312,7 @@ bool PostProcessing::Impl::can_change_at(std::size_t k, std::size_t from) {
     if (all[i] && !poser.standing(stances[k].base, curvature[k], i)) return false;
     for (const PaperStance* side : {&stances[from], &stances[from + 1]}) {
       if (side->contacts[i]) continue;
-      const LegJoints swing = poser.vertex_joints(i, side->vertex[i]);
-      if (!(poser.clearance_m(stances[k].base, i, swing) >= check.paper().swing_clearance_m)) {
-        return false;
-      }
+      if (!swing_joints(k, i, side->vertex[i])) return false;
     }
   }
   return true;
@@ -313,9 +331,11 @@ PostProcessing::Impl::Done PostProcessing::Impl::change_here(std::size_t k, std:
       move_leg(limb, *joints, false);
       make_contact(limb);
     } else {
-      if (auto balanced = balance(from + 1, next); !balanced) return balanced;
+      const auto swing = swing_joints(k, limb, after.vertex[limb]);
+      WEX_EXPECTS(swing.has_value());  // that is what can_change_at made sure of
+      if (auto balanced = balance(from + 1, limb, *swing); !balanced) return balanced;
       break_contact(limb);
-      move_leg(limb, poser.vertex_joints(limb, after.vertex[limb]), true);
+      move_leg(limb, *swing, true);
     }
   }
   nodes.back().stop = true;
@@ -329,7 +349,7 @@ PostProcessing::Impl::Done PostProcessing::Impl::change_contacts(std::size_t fro
   if (stances[to].contacts[kArmIndex] && !contacts[kArmIndex]) {
     std::size_t end = to;
     while (end + 1 < stances.size() && stances[end + 1].contacts[kArmIndex]) ++end;
-    auto point = buckets.common(stances[to].base, stances[end].base);
+    auto point = buckets.common(stances[to], stances[end]);
     if (!point) return failure(PaperStage::kBucket, point.error());
     bucket = *std::move(point);
   }
