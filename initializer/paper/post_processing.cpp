@@ -76,7 +76,10 @@ struct PostProcessing::Impl {
   std::size_t station = 0;
 
   [[nodiscard]] tl::unexpected<PaperFailure> failure(PaperStage stage, std::string why) const {
-    return tl::unexpected<PaperFailure>({stage, stations[station].pose, std::move(why)});
+    const bool stepping = std::any_of(stances.begin(), stances.end(), [](const PaperStance& s) {
+      return s.ok() && s.contacts != kDrivingContacts;
+    });
+    return tl::unexpected<PaperFailure>({stage, stations[station].pose, std::move(why), stepping});
   }
   [[nodiscard]] const Eigen::VectorXd& now() const { return nodes.back().q; }
   [[nodiscard]] bool four_wheels() const { return contacts == kDrivingContacts; }

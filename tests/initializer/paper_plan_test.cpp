@@ -13,14 +13,18 @@ namespace {
 class PaperPlan : public testing::TestWithParam<PlannerKind> {
  protected:
   static Result<Plan> plan(const TerrainMap& terrain, const Task& task,
-                           const PlanSettings& settings, int* num_paths = nullptr) {
+                           const PlanSettings& settings, int* num_paths = nullptr,
+                           SearchCensus* census = nullptr) {
     const PaperCheck check = paper_check(terrain, settings);
     auto post = PostProcessing::build(terrain, test_machine(), test_roadmaps(), check, settings);
     if (!post) return tl::unexpected<Error>(post.error());
     const std::function<void(const PlanProgress&)> observer = [&](const PlanProgress& progress) {
       if (num_paths != nullptr) *num_paths = progress.num_paths;
     };
-    return PaperSearch(terrain, test_machine(), task, settings, observer, check, *post, 0.0).run();
+    PaperSearch search(terrain, test_machine(), task, settings, observer, check, *post, 0.0);
+    auto plan = search.run();
+    if (census != nullptr) *census = search.census();
+    return plan;
   }
   static PlanSettings by_iterations(int iterations) {
     PlanSettings settings;
@@ -65,11 +69,35 @@ TEST_F(PaperPlan, SaysWhatStoodInTheWayWhenThereIsNoPlan) {
   // A ditch that neither legs nor arm get across.
   const TerrainMap map =
       make_map(30.0, 20.0, [](double x, double) { return std::abs(x) < 5.0 ? -20.0 : 0.0; });
-  const auto none = plan(map, {{-8.0, 0.0, 0.0}, {8.0, 0.0, 0.0}}, by_iterations(60));
+  SearchCensus census;
+  const auto none =
+      plan(map, {{-8.0, 0.0, 0.0}, {8.0, 0.0, 0.0}}, by_iterations(60), nullptr, &census);
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().code, ErrorCode::kNoPlan);
   EXPECT_THAT(none.error().message, testing::HasSubstr("poses were refused"));
   EXPECT_THAT(none.error().message, testing::Not(testing::HasSubstr("found and lost")));
+  EXPECT_GT(census.num_poses(), 60U);
+  EXPECT_FALSE(census.rejections().empty());
+  EXPECT_TRUE(census.failed_paths().empty());
+}
+
+// A gap askew: one front wheel loses the ground before the other, and most paths that pass
+// Algorithm 2 at every pose are lost in what follows, whether one becomes a plan or not.
+TEST_F(PaperPlan, SaysWherePathsWereLost) {
+  const TerrainMap map = make_map(
+      30.0, 20.0, [](double x, double y) { return std::abs(x + 0.05 * y) < 0.5 ? -2.0 : 0.0; });
+  SearchCensus census;
+  int num_paths = 0;
+  const auto found =
+      plan(map, {{-7.5, 0.0, 0.0}, {7.5, 0.0, 0.0}}, by_iterations(300), &num_paths, &census);
+  ASSERT_FALSE(census.failed_paths().empty());
+  EXPECT_LE(census.failed_paths().size(), static_cast<std::size_t>(num_paths) - found.has_value());
+  for (const FailedPath& path : census.failed_paths()) {
+    EXPECT_TRUE(path.stepping);
+    EXPECT_LT(std::abs(path.where.x_m), 4.0) << "where the gap is under the machine";
+    EXPECT_THAT(path.why, testing::ContainsRegex("^(contact schedule|legs|bucket point|arm motion|"
+                                                 "verification): "));
+  }
 }
 
 TEST_F(PaperPlan, PostProcessingChangesOneContactAtATimeOverAHole) {
