@@ -1,5 +1,6 @@
 #include "initializer/paper/body_poser.hpp"
 
+#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -7,6 +8,11 @@
 #include "initializer/stepping/tyre_patch.hpp"
 
 namespace wex {
+namespace {
+
+constexpr double kRollingErrorM = 0.05;  // of a standing wheel between two stations
+
+}  // namespace
 
 Result<BodyPoser> BodyPoser::build(const TerrainMap& terrain, const MachineModel& machine,
                                    const Roadmaps& roadmaps, const PaperCheck& check,
@@ -61,24 +67,50 @@ ArmPosture BodyPoser::vertex_posture(int vertex) const {
   return arm_.posture_of(q);
 }
 
+// In between everything moves evenly, as it does in the plan.
+bool BodyPoser::stays_on_ground(const StandingLeg& from, const StandingLeg& to, std::size_t leg) {
+  const auto near_ground = [&](double share) {
+    BaseCoordinates base = from.base + share * (to.base - from.base);
+    base[kBaseYaw] =
+        from.base[kBaseYaw] + share * wrap_angle(to.base[kBaseYaw] - from.base[kBaseYaw]);
+    const auto between = [share](double a, double b) { return a + share * (b - a); };
+    const LegJoints joints{between(from.joints.haa_rad, to.joints.haa_rad),
+                           between(from.joints.hfe_rad, to.joints.hfe_rad),
+                           between(from.joints.steer_rad, to.joints.steer_rad)};
+    return std::abs(inverse_.gap_m(base, leg, joints)) <= kRollingErrorM;
+  };
+  return near_ground(0.25) && near_ground(0.5) && near_ground(0.75);
+}
+
 Result<LegJoints, const char*> BodyPoser::standing(const BaseCoordinates& base,
-                                                   double curvature_1_m, std::size_t leg) {
+                                                   double curvature_1_m, std::size_t leg,
+                                                   const std::optional<StandingLeg>& before) {
+  const char* why = "has no configuration on the ground";
+  const auto gets_here = [&](const LegJoints& joints) {
+    if (!before || stays_on_ground(*before, {base, joints}, leg)) return true;
+    why = "would have to be lifted from where it stands to where it can stand next";
+    return false;
+  };
   const auto others = static_cast<std::uint8_t>(0xF & ~(1U << leg));
   const auto hips = placer_.default_hfe_rad();
   if (const auto placed = placer_.place(base, curvature_1_m, others, hips, hips)) {
     const WheeledLeg& wheel = machine_->legs[leg];
     const double haa_rad =
         wheel.haa < 0 ? 0.0 : machine_->transport_posture()[wheel.haa - kNumBaseCoordinates];
-    return LegJoints{haa_rad, placed->hfe_rad[leg], placed->steer_rad[leg]};
+    const LegJoints joints{haa_rad, placed->hfe_rad[leg], placed->steer_rad[leg]};
+    if (gets_here(joints)) return joints;
   }
-  const char* why = "has no configuration on the ground";
-  const std::vector<int> vertices = check_->touching_vertices(base, leg);
+  std::vector<LegJoints> guesses;
+  if (before) guesses.push_back(before->joints);
+  for (const int vertex : check_->touching_vertices(base, leg)) {
+    guesses.push_back(vertex_joints(leg, vertex));
+  }
   for (const std::optional<double> rolling :
        {std::optional(curvature_1_m), std::optional<double>()}) {
-    for (const int vertex : vertices) {
-      const auto joints = inverse_.rest(base, leg, rolling, vertex_joints(leg, vertex));
-      if (joints) return joints;
-      why = joints.error();
+    for (const LegJoints& guess : guesses) {
+      const auto joints = inverse_.rest(base, leg, rolling, guess);
+      if (joints && gets_here(*joints)) return joints;
+      if (!joints) why = joints.error();
     }
   }
   return tl::unexpected<const char*>(why);

@@ -52,6 +52,12 @@ bool LegInverse::on_good_ground(std::size_t leg) const {
   return terrain_.traversable_at(p) && terrain_.signed_distance_m(p) >= min_distance_m_;
 }
 
+double LegInverse::gap_m(const BaseCoordinates& base, std::size_t leg, const LegJoints& joints) {
+  q_.head<kNumBaseCoordinates>() = base;
+  update(leg, joints);
+  return gap_m(leg);
+}
+
 double LegInverse::clearance_m(const BaseCoordinates& base, std::size_t leg,
                                const LegJoints& joints) {
   q_.head<kNumBaseCoordinates>() = base;

@@ -30,6 +30,8 @@ class LegInverse {
   /// Height of a wheel above the tyre-dilated ground; NaN off the map or over unknown ground.
   [[nodiscard]] double clearance_m(const BaseCoordinates& base, std::size_t leg,
                                    const LegJoints& joints);
+  /// Of the wheel's disc above where it would rest; NaN likewise.
+  [[nodiscard]] double gap_m(const BaseCoordinates& base, std::size_t leg, const LegJoints& joints);
 
  private:
   void update(std::size_t leg, const LegJoints& joints);

@@ -147,7 +147,9 @@ PostProcessing::Impl::Done PostProcessing::Impl::place_legs(std::size_t k,
   q.head<kNumBaseCoordinates>() = stance.base;
   for (std::size_t i = 0; i < kNumWheels; ++i) {
     if (on_ground[i]) {
-      const auto joints = poser.standing(stance.base, curvature[k], i);
+      std::optional<StandingLeg> before;
+      if (!nodes.empty()) before = {now().head<kNumBaseCoordinates>(), poser.read_leg(now(), i)};
+      const auto joints = poser.standing(stance.base, curvature[k], i, before);
       if (!joints) return failure(PaperStage::kLegs, name_of(i) + " " + joints.error());
       poser.write_leg(*joints, i, q);
       continue;
