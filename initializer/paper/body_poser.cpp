@@ -82,11 +82,15 @@ bool BodyPoser::stays_on_ground(const StandingLeg& from, const StandingLeg& to, 
   return near_ground(0.25) && near_ground(0.5) && near_ground(0.75);
 }
 
-Result<LegJoints, const char*> BodyPoser::standing(const BaseCoordinates& base,
-                                                   double curvature_1_m, std::size_t leg,
-                                                   const std::optional<StandingLeg>& before) {
+Result<LegJoints, const char*> BodyPoser::standing(
+    const BaseCoordinates& base, double curvature_1_m, std::size_t leg,
+    const std::function<bool(const LegJoints&)>& clear, const std::optional<StandingLeg>& before) {
   const char* why = "has no configuration on the ground";
   const auto gets_here = [&](const LegJoints& joints) {
+    if (!clear(joints)) {
+      why = "would touch another limb";
+      return false;
+    }
     if (!before || stays_on_ground(*before, {base, joints}, leg)) return true;
     why = "would have to be lifted from where it stands to where it can stand next";
     return false;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -34,9 +35,11 @@ class BodyPoser {
   /// vertices nearest to default lead; else as it stood before; else spread as at the first vertex
   /// of those that touch that can be steered to roll along the path; else steered as at the first
   /// that touches.
+  ///   clear   whether the leg keeps away from the machine's other limbs
   ///   before  if given: the wheel stood so one station earlier, and must get here on the ground
   [[nodiscard]] Result<LegJoints, const char*> standing(
       const BaseCoordinates& base, double curvature_1_m, std::size_t leg,
+      const std::function<bool(const LegJoints&)>& clear,
       const std::optional<StandingLeg>& before = std::nullopt);
   [[nodiscard]] double clearance_m(const BaseCoordinates& base, std::size_t leg,
                                    const LegJoints& joints) {

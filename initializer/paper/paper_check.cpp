@@ -391,12 +391,39 @@ int PaperCheck::swing_vertex(const BaseCoordinates& base, std::size_t leg) const
   return row < 0 ? -1 : legs_[leg].vertex(row);
 }
 
-std::vector<int> PaperCheck::carrying_bucket_rows(const PaperStance& stance) const {
-  const Eigen::Isometry3d T_world_base = T_world_base_from(stance.base);
+Eigen::Vector3d PaperCheck::moment_but_arm(const PaperStance& stance) const noexcept {
   Eigen::Vector3d moment_base = fixed_moment_base_;
   for (std::size_t i = 0; i < kNumWheels; ++i) {
     moment_base += legs_[i].moment_base(stance.vertex[i]);
   }
+  return moment_base;
+}
+
+std::vector<int> PaperCheck::counterweights(const PaperStance& stance) const {
+  const Eigen::Isometry3d T_world_base = T_world_base_from(stance.base);
+  std::array<Eigen::Vector2d, 3> corners;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < kNumWheels; ++i) {
+    if (!stance.contacts[i]) continue;
+    corners[count++] = (T_world_base * legs_[i].p_base_contact(stance.vertex[i])).head<2>();
+  }
+  const MarginInMoment margin(T_world_base, moment_but_arm(stance), mass_kg_, corners);
+  std::vector<std::pair<float, int>> by_margin;
+  for (int row = 0; row < swing_.size(); ++row) {
+    const Eigen::Vector3f moment = swing_.moment_base(row).cast<float>();
+    const float margin_m = margin.at(moment.x(), moment.y(), moment.z());
+    if (static_cast<double>(margin_m) < settings_.min_stability_margin_m) continue;
+    by_margin.emplace_back(-margin_m, swing_.vertex(row));
+  }
+  std::sort(by_margin.begin(), by_margin.end());
+  std::vector<int> vertices;
+  for (const auto& [margin_m, vertex] : by_margin) vertices.push_back(vertex);
+  return vertices;
+}
+
+std::vector<int> PaperCheck::carrying_bucket_rows(const PaperStance& stance) const {
+  const Eigen::Isometry3d T_world_base = T_world_base_from(stance.base);
+  const Eigen::Vector3d moment_base = moment_but_arm(stance);
   std::vector<int> rows;
   visit_touching(bucket_, height_, 0.0F, CellPose(T_world_base, dilated_), [&](int row) {
     const double margin_m = margin_on_bucket_m(T_world_base, moment_base, stance, row);
@@ -406,7 +433,7 @@ std::vector<int> PaperCheck::carrying_bucket_rows(const PaperStance& stance) con
   return rows;
 }
 
-PaperStance PaperCheck::stand(const BaseCoordinates& base) const noexcept {
+PaperStance PaperCheck::stand(const BaseCoordinates& base, int lifted) const noexcept {
   PaperStance stance;
   stance.base = base;
   const auto rejected = [&](PaperRejection why) {
@@ -424,7 +451,7 @@ PaperStance PaperCheck::stand(const BaseCoordinates& base) const noexcept {
 
   int grounded = 0;
   for (std::size_t i = 0; i < kNumWheels; ++i) {
-    stance.vertex[i] = grounded_row(i, pose);
+    stance.vertex[i] = static_cast<int>(i) == lifted ? -1 : grounded_row(i, pose);
     stance.contacts[i] = stance.vertex[i] >= 0;
     grounded += stance.contacts[i];
     if (static_cast<int>(i) - grounded >= 2) return rejected(PaperRejection::kTooFewLegs);

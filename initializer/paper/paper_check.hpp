@@ -66,7 +66,8 @@ class PaperCheck {
   [[nodiscard]] BaseCoordinates base_at(const Pose2& pose) const noexcept;
 
   /// Algorithm 2 with the base given.
-  [[nodiscard]] PaperStance stand(const BaseCoordinates& base) const noexcept;
+  ///   lifted  a leg that is to swing though it could stand; -1: none
+  [[nodiscard]] PaperStance stand(const BaseCoordinates& base, int lifted = -1) const noexcept;
 
   /// Both.
   [[nodiscard]] PaperStance stand(const Pose2& pose) const noexcept;
@@ -80,6 +81,9 @@ class PaperCheck {
   /// The first vertex of a leg that is clear of the ground; -1 if none is.
   [[nodiscard]] int swing_vertex(const BaseCoordinates& base, std::size_t leg) const noexcept;
 
+  /// Vertices of the arm that balance a stance on three wheels (contract), the most central centre
+  /// of mass first, whatever may be in their way. Allocates.
+  [[nodiscard]] std::vector<int> counterweights(const PaperStance& stance) const;
   /// Rows of the bucket's contact table that touch the ground and make a stable tripod of a stance
   /// on two wheels (contract), nearest to default first. Allocates.
   [[nodiscard]] std::vector<int> carrying_bucket_rows(const PaperStance& stance) const;
@@ -98,6 +102,7 @@ class PaperCheck {
                         const Eigen::Vector3d& moment_base, PaperStance& stance) const noexcept;
   void support_with_arm(const Eigen::Isometry3d& T_world_base, const CellPose& pose,
                         const Eigen::Vector3d& moment_base, PaperStance& stance) const noexcept;
+  [[nodiscard]] Eigen::Vector3d moment_but_arm(const PaperStance& stance) const noexcept;
   [[nodiscard]] double margin_on_bucket_m(const Eigen::Isometry3d& T_world_base,
                                           const Eigen::Vector3d& moment_base,
                                           const PaperStance& stance, int row) const noexcept;

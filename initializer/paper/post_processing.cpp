@@ -1,6 +1,7 @@
 #include "initializer/paper/post_processing.hpp"
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -54,7 +55,8 @@ struct PostProcessing::Impl {
         mover(machine_model, poser.arm(), collision, poser.ground(),
               plan_settings.min_stability_margin_m, motion),
         planner(machine_model, maps.limbs.back()),
-        buckets(terrain_map, maps, paper_check, poser.arm(), plan_settings) {}
+        buckets(terrain_map, maps, paper_check, poser.arm(), plan_settings),
+        workspace(machine_model.tree.make_workspace()) {}
 
   const MachineModel& machine;
   const PaperCheck& check;
@@ -65,6 +67,7 @@ struct PostProcessing::Impl {
   ArmMover mover;
   ArmPathPlanner planner;
   BucketPoints buckets;
+  KinematicTree::Workspace workspace;
 
   // Of the path in hand.
   std::vector<Station> stations;
@@ -74,6 +77,7 @@ struct PostProcessing::Impl {
   ContactFlags contacts{};
   std::optional<BucketPoint> bucket;
   std::size_t station = 0;
+  std::optional<std::size_t> stuck_leg;  ///< that could not roll on when the last drive failed
 
   [[nodiscard]] tl::unexpected<PaperFailure> failure(PaperStage stage, std::string why) const {
     const bool stepping = std::any_of(stances.begin(), stances.end(), [](const PaperStance& s) {
@@ -112,15 +116,19 @@ struct PostProcessing::Impl {
     nodes.back().stop = true;
   }
 
+  Result<LegJoints, const char*> standing(std::size_t k, std::size_t leg, Eigen::VectorXd q,
+                                          const std::optional<StandingLeg>& before = std::nullopt);
   Done place_legs(std::size_t k, const ContactFlags& on_ground, Eigen::VectorXd& q);
   Done drive_to(std::size_t k);
   Done change_contacts(std::size_t from);
+  Done step_over(std::size_t from, std::size_t leg);
   bool can_change_at(std::size_t k, std::size_t from);
   std::optional<LegJoints> swing_joints(std::size_t k, std::size_t leg, int vertex);
   Done change_here(std::size_t k, std::size_t from);
   Done move_arm(const ArmPosture& to);
   Done lower_bucket(std::size_t k);
   Done raise_bucket();
+  ArmPosture counterweight(std::size_t k, const Footing& footing, const Eigen::VectorXd& q);
   Done balance(std::size_t k, std::size_t leg, const LegJoints& swung);
   void move_leg(std::size_t leg, const LegJoints& to, bool lifting);
   void write_arm(ArmPosture posture, Eigen::VectorXd& q) const;
@@ -138,6 +146,22 @@ double PostProcessing::Impl::margin_m(const Eigen::VectorXd& q, const ContactFla
   return poser.footing(q, on_ground).margin_m(poser.arm().moment_base(poser.arm().posture_of(q)));
 }
 
+// A leg on the ground of a station, away from the chassis and the other legs as they are in q.
+Result<LegJoints, const char*> PostProcessing::Impl::standing(
+    std::size_t k, std::size_t leg, Eigen::VectorXd q, const std::optional<StandingLeg>& before) {
+  using Part = CollisionModel::Part;
+  constexpr auto kFirstLeg = static_cast<std::size_t>(Part::kLF);
+  std::bitset<CollisionModel::kNumParts> others;
+  for (std::size_t i = 0; i < kNumWheels; ++i) others[kFirstLeg + i] = i != leg;
+  others[static_cast<std::size_t>(Part::kChassis)] = true;
+  const auto clear = [&](const LegJoints& joints) {
+    poser.write_leg(joints, leg, q);
+    machine.tree.update(q, workspace);
+    return collision.clear(workspace, static_cast<Part>(kFirstLeg + leg), others, 0.0);
+  };
+  return poser.standing(stances[k].base, curvature[k], leg, clear, before);
+}
+
 // Base of a station; standing legs on the ground, swinging ones as they are as long as that is
 // clear, else at the station's own vertex.
 PostProcessing::Impl::Done PostProcessing::Impl::place_legs(std::size_t k,
@@ -149,8 +173,11 @@ PostProcessing::Impl::Done PostProcessing::Impl::place_legs(std::size_t k,
     if (on_ground[i]) {
       std::optional<StandingLeg> before;
       if (!nodes.empty()) before = {now().head<kNumBaseCoordinates>(), poser.read_leg(now(), i)};
-      const auto joints = poser.standing(stance.base, curvature[k], i, before);
-      if (!joints) return failure(PaperStage::kLegs, name_of(i) + " " + joints.error());
+      const auto joints = standing(k, i, q, before);
+      if (!joints) {
+        stuck_leg = i;
+        return failure(PaperStage::kLegs, name_of(i) + " " + joints.error());
+      }
       poser.write_leg(*joints, i, q);
       continue;
     }
@@ -178,7 +205,7 @@ PostProcessing::Impl::Done PostProcessing::Impl::drive_to(std::size_t k) {
   } else if (!four_wheels() && !(margin_m(q, contacts) >= settings.min_stability_margin_m)) {
     // The counterweight goes where this station wants it while the last one stands.
     if (stances[k].contacts == contacts) {
-      if (auto moved = move_arm(poser.vertex_posture(stances[k].vertex[kArmIndex])); !moved) {
+      if (auto moved = move_arm(counterweight(k, poser.footing(q, contacts), q)); !moved) {
         return moved;
       }
     }
@@ -282,6 +309,20 @@ PostProcessing::Impl::Done PostProcessing::Impl::raise_bucket() {
   return {};
 }
 
+// Of the vertices that balance a station the most central one with nothing in its way; Algorithm 2
+// knows of the bucket's contact point alone.
+ArmPosture PostProcessing::Impl::counterweight(std::size_t k, const Footing& footing,
+                                               const Eigen::VectorXd& q) {
+  Eigen::VectorXd tried = q;
+  if (num_contacts(stances[k].contacts) == 3 && !stances[k].contacts[kArmIndex]) {
+    for (const int vertex : check.counterweights(stances[k])) {
+      const ArmPosture posture = poser.vertex_posture(vertex);
+      if (mover.fault(footing, tried, posture, false) == nullptr) return posture;
+    }
+  }
+  return poser.vertex_posture(stances[k].vertex[kArmIndex]);
+}
+
 // The arm as counterweight before a wheel leaves the ground, if it does not balance as it is: with
 // the leg where it stands and where it is going to be.
 PostProcessing::Impl::Done PostProcessing::Impl::balance(std::size_t k, std::size_t leg,
@@ -294,7 +335,7 @@ PostProcessing::Impl::Done PostProcessing::Impl::balance(std::size_t k, std::siz
   if (next[kArmIndex] || (margin_m(now(), next) >= least_m && margin_m(q, next) >= least_m)) {
     return {};
   }
-  return move_arm(poser.vertex_posture(stances[k].vertex[kArmIndex]));
+  return move_arm(counterweight(k, poser.footing(q, next), q));
 }
 
 // A leg in the air at a station: at the given vertex, or at the first that is clear there.
@@ -314,7 +355,7 @@ std::optional<LegJoints> PostProcessing::Impl::swing_joints(std::size_t k, std::
 bool PostProcessing::Impl::can_change_at(std::size_t k, std::size_t from) {
   const ContactFlags all = both(stances[from].contacts, stances[from + 1].contacts);
   for (std::size_t i = 0; i < kNumWheels; ++i) {
-    if (all[i] && !poser.standing(stances[k].base, curvature[k], i)) return false;
+    if (all[i] && !standing(k, i, now())) return false;
     for (const PaperStance* side : {&stances[from], &stances[from + 1]}) {
       if (side->contacts[i]) continue;
       if (!swing_joints(k, i, side->vertex[i])) return false;
@@ -331,7 +372,7 @@ PostProcessing::Impl::Done PostProcessing::Impl::change_here(std::size_t k, std:
     if (limb == kArmIndex) {
       if (auto moved = next[limb] ? lower_bucket(k) : raise_bucket(); !moved) return moved;
     } else if (next[limb]) {
-      const auto joints = poser.standing(stances[k].base, curvature[k], limb);
+      const auto joints = standing(k, limb, now());
       if (!joints) return failure(PaperStage::kLegs, name_of(limb) + " " + joints.error());
       move_leg(limb, *joints, false);
       make_contact(limb);
@@ -369,6 +410,20 @@ PostProcessing::Impl::Done PostProcessing::Impl::change_contacts(std::size_t fro
   return change_here(to, from);
 }
 
+// On four wheels a leg whose vertex at the next station cannot be rolled to changes its contact all
+// the same: lifted from where it stands, over three wheels and the counterweight, and put down.
+PostProcessing::Impl::Done PostProcessing::Impl::step_over(std::size_t from, std::size_t leg) {
+  const PaperStance lifted = check.stand(stances[from + 1].base, static_cast<int>(leg));
+  if (!lifted.ok()) {
+    return failure(PaperStage::kLegs, name_of(leg) +
+                                          " cannot be lifted over what it cannot roll "
+                                          "over: " +
+                                          wex::describe(lifted.rejection));
+  }
+  stances[from + 1] = lifted;
+  return change_contacts(from);
+}
+
 Result<std::vector<WholeBodyNode>, PaperFailure> PostProcessing::Impl::run(const DrivePath& path) {
   stations = path_stations(path, settings.subnode_spacing_m);
   curvature = steered_curvature_1_m(path, stations, motion.steering_window_m);
@@ -394,9 +449,19 @@ Result<std::vector<WholeBodyNode>, PaperFailure> PostProcessing::Impl::run(const
   add(q);
   nodes.back().stop = true;
   for (std::size_t i = 0; i + 1 < stations.size(); ++i) {
-    const bool same = stances[i + 1].contacts == contacts;
-    if (auto done = same ? drive_to(i + 1) : change_contacts(i); !done) {
-      return tl::unexpected<PaperFailure>(done.error());
+    stuck_leg.reset();
+    Done done = stances[i + 1].contacts == contacts ? drive_to(i + 1) : change_contacts(i);
+    if (!done && stuck_leg && four_wheels() && i + 2 < stations.size() &&
+        stances[i + 1].contacts == kDrivingContacts) {
+      done = step_over(i, *stuck_leg);
+    }
+    if (!done) return tl::unexpected<PaperFailure>(done.error());
+  }
+  for (const MotionNode& node : nodes) {
+    machine.tree.update(node.q, workspace);
+    station = node.state;
+    if (!collision.clear(workspace, 0.0)) {
+      return failure(PaperStage::kLegs, "limbs would touch each other");
     }
   }
   turn_wheels(machine, nodes);

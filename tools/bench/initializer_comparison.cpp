@@ -111,9 +111,9 @@ std::string comparison_by_cell(const std::vector<InitializerCell>& cells,
 std::string comparison_by_variant(const std::vector<InitializerCell>& cells,
                                   const std::vector<InitializerVariantRows>& variants) {
   const std::vector<std::string> terrains = terrains_of(cells);
-  std::string text = format("%-40s", "accepted plans");
+  std::string text = format("%-40s", "accepted plans, paths of the base, seeds");
   for (const std::string& terrain : terrains) text += format(" %10s", terrain.c_str());
-  text += format(" %9s %9s %9s %9s\n", "all", "paths", "first [s]", "95 %");
+  text += format(" %11s %9s %9s\n", "all", "first [s]", "95 %");
   for (const InitializerVariantRows& variant : variants) {
     text += format("%-40s", variant.variant.name.c_str());
     Counts all;
@@ -127,9 +127,9 @@ std::string comparison_by_variant(const std::vector<InitializerCell>& cells,
           all.add(row);
         }
       }
-      text += format(" %6d/%-3d", here.accepted, here.runs);
+      text += format(" %10s", format("%d/%d/%d", here.accepted, here.with_path, here.runs).c_str());
     }
-    text += format(" %5d/%-3d %9d ", all.accepted, all.runs, all.with_path) +
+    text += format(" %11s ", format("%d/%d/%d", all.accepted, all.with_path, all.runs).c_str()) +
             seconds(all.first_quantile_s(0.5)) + " " + seconds(all.first_quantile_s(0.95)) + "\n";
   }
   return text;

@@ -37,8 +37,8 @@ struct InitializerVariantRows {
 [[nodiscard]] std::string comparison_by_cell(const std::vector<InitializerCell>& cells,
                                              const std::vector<InitializerVariantRows>& variants);
 
-/// A line per variant: accepted plans by terrain, all cells together, seeds with a path, and time
-/// to the first accepted plan: median, 95 %.
+/// A line per variant: accepted plans, seeds with a path of the base, and seeds, by terrain and all
+/// together; time to the first accepted plan, median and 95 %.
 [[nodiscard]] std::string comparison_by_variant(
     const std::vector<InitializerCell>& cells, const std::vector<InitializerVariantRows>& variants);
 
