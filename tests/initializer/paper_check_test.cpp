@@ -192,6 +192,25 @@ TEST(PaperCheck, ADitchUnderTheFrontAxleMeansTwoWheelsAndTheBucket) {
   EXPECT_GE(standing, 3);
 }
 
+TEST(PaperCheck, ALegMayBeLiftedThoughItCouldStand) {
+  const TerrainMap flat = flat_map();
+  const PaperCheck check = paper_check(flat);
+  const PaperStance stance = check.stand(level_base({0.0, 0.0, 0.0}), 1);
+  ASSERT_TRUE(stance.ok()) << describe(stance.rejection);
+  EXPECT_EQ(stance.contacts, (ContactFlags{true, false, true, true, false}));
+  // What balances it best comes first; on level ground nothing is in its way.
+  const std::vector<int> vertices = check.counterweights(stance);
+  ASSERT_GT(vertices.size(), 100U);
+  EXPECT_EQ(vertices.front(), stance.vertex[kArmIndex]);
+  // By hand: front right is missing, so the mass must go back and to the left of where the default
+  // posture, ahead, has it.
+  const Eigen::Matrix3Xd& moment = test_roadmaps().limbs.back().moment_base;
+  for (const int vertex : vertices) {
+    const Eigen::Vector3d shift = moment.col(vertex) - moment.col(0);
+    EXPECT_GT(shift.y() - shift.x(), 0.0) << "vertex " << vertex;
+  }
+}
+
 TEST(PaperCheck, NothingToStandOnMeansNothing) {
   // Three-metre pits and poles in between: no cell is farther than 0.15 m from an edge.
   const TerrainMap map = make_map(40.0, 30.0, [](double x, double y) {
