@@ -7,8 +7,8 @@
 
 namespace wex {
 
-/// make_plan, and what its search turned down on the way, plan or not; left alone in the paper's
-/// mode and where nothing was searched.
+/// make_plan, and what its search turned down on the way, plan or not; left alone where nothing was
+/// searched.
 [[nodiscard]] Result<Plan> make_plan(const TerrainMap& terrain, const MachineModel& machine,
                                      const Task& task, const PlanSettings& settings,
                                      const std::function<void(const PlanProgress&)>& observer,

@@ -96,7 +96,7 @@ Result<Plan> make_plan(const TerrainMap& terrain, const MachineModel& machine, c
     return tl::unexpected<Error>(goal.error());
   }
   if (settings.mode == PlanMode::kPaper) {
-    return make_paper_plan(terrain, machine, task, settings, observer, begin_s);
+    return make_paper_plan(terrain, machine, task, settings, observer, begin_s, turned_down);
   }
   PlanSearch search(terrain, machine, task, settings, observer, *check, start->base, begin_s, {});
   Result<Plan> plan = search.run();

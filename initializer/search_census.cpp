@@ -13,6 +13,9 @@ std::vector<std::pair<std::uint64_t, std::string>> SearchCensus::rejections() co
     if (rejections_[i] > 0)
       reasons.emplace_back(rejections_[i], describe(static_cast<Rejection>(i)));
   }
+  for (const auto& other : others_) {
+    if (other.first > 0) reasons.push_back(other);
+  }
   if (num_blocked_ > 0) reasons.emplace_back(num_blocked_, "near a place where a path failed");
   if (num_unsupported_ > 0) {
     reasons.emplace_back(num_unsupported_, "no wheels and bucket to stand on");

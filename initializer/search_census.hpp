@@ -29,10 +29,15 @@ struct FailedPlace {
 class SearchCensus {
  public:
   void count_pose() noexcept { ++num_poses_; }
+  void count_poses(std::uint64_t times) noexcept { num_poses_ += times; }
   void count(Rejection rejection) noexcept { ++rejections_[static_cast<std::size_t>(rejection)]; }
   void count_blocked() noexcept { ++num_blocked_; }
   void count_unsupported() noexcept { ++num_unsupported_; }
   void count_askew() noexcept { ++num_askew_; }
+  /// Of a search with reasons of its own; once for each reason (contract).
+  void count(std::string reason, std::uint64_t times) {
+    others_.emplace_back(times, std::move(reason));
+  }
   void add(FailedPath path) { failed_paths_.push_back(std::move(path)); }
 
   [[nodiscard]] const std::vector<FailedPath>& failed_paths() const noexcept {
@@ -52,6 +57,7 @@ class SearchCensus {
 
   std::uint64_t num_poses_ = 0, num_blocked_ = 0, num_unsupported_ = 0, num_askew_ = 0;
   std::array<std::uint64_t, kNumRejections> rejections_{};
+  std::vector<std::pair<std::uint64_t, std::string>> others_;
   std::vector<FailedPath> failed_paths_;
 };
 

@@ -49,13 +49,14 @@ BaseCoordinates PaperCheck::base_at(const Pose2& pose) const noexcept {
     propose(terrain_->filtered_height_m(p), terrain_->filtered_normal(p));
   };
   const Eigen::Vector2d here(pose.x_m, pose.y_m);
+  BaseCoordinates best = BaseCoordinates::Constant(std::numeric_limits<double>::quiet_NaN());
+  if (!terrain_->known(here)) return best;
   propose_at(here);
   // On traversable ground the nearest traversable place is here.
   if (settings_.ablation.nearest_traversable && !terrain_->traversable_at(here)) {
     propose_at(terrain_->nearest_traversable(here));
   }
 
-  BaseCoordinates best = BaseCoordinates::Constant(std::numeric_limits<double>::quiet_NaN());
   double lowest = std::numeric_limits<double>::infinity();
   for (std::size_t n = 0; n < count; ++n) {
     const Tilt tilt = tilt_from_normal(normals[n], pose.yaw_rad);

@@ -1,10 +1,18 @@
 #include "initializer/paper/body_poser.hpp"
 
+#include <cmath>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "initializer/stepping/tyre_patch.hpp"
 
 namespace wex {
+namespace {
+
+constexpr double kRollingErrorM = 0.05;  // of a standing wheel between two stations
+
+}  // namespace
 
 Result<BodyPoser> BodyPoser::build(const TerrainMap& terrain, const MachineModel& machine,
                                    const Roadmaps& roadmaps, const PaperCheck& check,
@@ -13,19 +21,20 @@ Result<BodyPoser> BodyPoser::build(const TerrainMap& terrain, const MachineModel
   if (!placer) return tl::unexpected<Error>(placer.error());
   auto arm = ArmKinematics::build(machine);
   if (!arm) return tl::unexpected<Error>(arm.error());
-  return BodyPoser(terrain, machine, roadmaps, check, *std::move(placer), *std::move(arm));
+  return BodyPoser(terrain, machine, roadmaps, check, *std::move(placer), *std::move(arm),
+                   settings.min_signed_distance_m);
 }
 
 BodyPoser::BodyPoser(const TerrainMap& terrain, const MachineModel& machine,
                      const Roadmaps& roadmaps, const PaperCheck& check, WheelPlacer placer,
-                     ArmKinematics arm)
+                     ArmKinematics arm, double min_signed_distance_m)
     : terrain_(&terrain),
       machine_(&machine),
       roadmaps_(&roadmaps),
       check_(&check),
       placer_(std::move(placer)),
       arm_(std::move(arm)),
-      inverse_(terrain, machine),
+      inverse_(terrain, machine, min_signed_distance_m),
       workspace_(machine.tree.make_workspace()) {}
 
 LegJoints BodyPoser::read_leg(const Eigen::VectorXd& q, std::size_t leg) const {
@@ -58,20 +67,57 @@ ArmPosture BodyPoser::vertex_posture(int vertex) const {
   return arm_.posture_of(q);
 }
 
-Result<LegJoints, const char*> BodyPoser::standing(const BaseCoordinates& base,
-                                                   double curvature_1_m, std::size_t leg) {
+// In between everything moves evenly, as it does in the plan.
+bool BodyPoser::stays_on_ground(const StandingLeg& from, const StandingLeg& to, std::size_t leg) {
+  const auto near_ground = [&](double share) {
+    BaseCoordinates base = from.base + share * (to.base - from.base);
+    base[kBaseYaw] =
+        from.base[kBaseYaw] + share * wrap_angle(to.base[kBaseYaw] - from.base[kBaseYaw]);
+    const auto between = [share](double a, double b) { return a + share * (b - a); };
+    const LegJoints joints{between(from.joints.haa_rad, to.joints.haa_rad),
+                           between(from.joints.hfe_rad, to.joints.hfe_rad),
+                           between(from.joints.steer_rad, to.joints.steer_rad)};
+    return std::abs(inverse_.gap_m(base, leg, joints)) <= kRollingErrorM;
+  };
+  return near_ground(0.25) && near_ground(0.5) && near_ground(0.75);
+}
+
+Result<LegJoints, const char*> BodyPoser::standing(
+    const BaseCoordinates& base, double curvature_1_m, std::size_t leg,
+    const std::function<bool(const LegJoints&)>& clear, const std::optional<StandingLeg>& before) {
+  const char* why = "has no configuration on the ground";
+  const auto gets_here = [&](const LegJoints& joints) {
+    if (!clear(joints)) {
+      why = "would touch another limb";
+      return false;
+    }
+    if (!before || stays_on_ground(*before, {base, joints}, leg)) return true;
+    why = "would have to be lifted from where it stands to where it can stand next";
+    return false;
+  };
   const auto others = static_cast<std::uint8_t>(0xF & ~(1U << leg));
   const auto hips = placer_.default_hfe_rad();
   if (const auto placed = placer_.place(base, curvature_1_m, others, hips, hips)) {
     const WheeledLeg& wheel = machine_->legs[leg];
     const double haa_rad =
         wheel.haa < 0 ? 0.0 : machine_->transport_posture()[wheel.haa - kNumBaseCoordinates];
-    return LegJoints{haa_rad, placed->hfe_rad[leg], placed->steer_rad[leg]};
+    const LegJoints joints{haa_rad, placed->hfe_rad[leg], placed->steer_rad[leg]};
+    if (gets_here(joints)) return joints;
   }
-  const int row = check_->ground_legs(base)[leg];
-  if (row < 0) return tl::unexpected<const char*>("has too few configurations on the ground");
-  return inverse_.rest(base, leg, curvature_1_m,
-                       vertex_joints(leg, check_->leg_table(leg).vertex(row)));
+  std::vector<LegJoints> guesses;
+  if (before) guesses.push_back(before->joints);
+  for (const int vertex : check_->touching_vertices(base, leg)) {
+    guesses.push_back(vertex_joints(leg, vertex));
+  }
+  for (const std::optional<double> rolling :
+       {std::optional(curvature_1_m), std::optional<double>()}) {
+    for (const LegJoints& guess : guesses) {
+      const auto joints = inverse_.rest(base, leg, rolling, guess);
+      if (joints && gets_here(*joints)) return joints;
+      if (!joints) why = joints.error();
+    }
+  }
+  return tl::unexpected<const char*>(why);
 }
 
 Footing BodyPoser::footing(const Eigen::VectorXd& q, const ContactFlags& contacts) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -11,6 +12,12 @@
 #include "initializer/stepping/wheel_placer.hpp"
 
 namespace wex {
+
+/// A leg on the ground, and the base it belongs to.
+struct StandingLeg {
+  BaseCoordinates base;
+  LegJoints joints;
+};
 
 /// Whole-body poses for the post-processing: legs at vertices or on the ground, the arm where it
 /// is. One per thread.
@@ -25,9 +32,15 @@ class BodyPoser {
 
   [[nodiscard]] LegJoints vertex_joints(std::size_t leg, int vertex) const;
   /// On the ground: hips as in transport posture if the wheel can stand so, which is where the
-  /// vertices nearest to default lead; else spread as at the vertex that touches.
-  [[nodiscard]] Result<LegJoints, const char*> standing(const BaseCoordinates& base,
-                                                        double curvature_1_m, std::size_t leg);
+  /// vertices nearest to default lead; else as it stood before; else spread as at the first vertex
+  /// of those that touch that can be steered to roll along the path; else steered as at the first
+  /// that touches.
+  ///   clear   whether the leg keeps away from the machine's other limbs
+  ///   before  if given: the wheel stood so one station earlier, and must get here on the ground
+  [[nodiscard]] Result<LegJoints, const char*> standing(
+      const BaseCoordinates& base, double curvature_1_m, std::size_t leg,
+      const std::function<bool(const LegJoints&)>& clear,
+      const std::optional<StandingLeg>& before = std::nullopt);
   [[nodiscard]] double clearance_m(const BaseCoordinates& base, std::size_t leg,
                                    const LegJoints& joints) {
     return inverse_.clearance_m(base, leg, joints);
@@ -44,7 +57,11 @@ class BodyPoser {
 
  private:
   BodyPoser(const TerrainMap& terrain, const MachineModel& machine, const Roadmaps& roadmaps,
-            const PaperCheck& check, WheelPlacer placer, ArmKinematics arm);
+            const PaperCheck& check, WheelPlacer placer, ArmKinematics arm,
+            double min_signed_distance_m);
+
+  [[nodiscard]] bool stays_on_ground(const StandingLeg& from, const StandingLeg& to,
+                                     std::size_t leg);
 
   const TerrainMap* terrain_;
   const MachineModel* machine_;

@@ -45,18 +45,18 @@ BucketPoints::BucketPoints(const TerrainMap& terrain, const Roadmaps& roadmaps,
   });
 }
 
-Result<BucketPoint, std::string> BucketPoints::common(const BaseCoordinates& begin,
-                                                      const BaseCoordinates& end) const {
-  const auto positions = [&](const BaseCoordinates& base, const std::vector<int>& rows) {
-    const Eigen::Isometry3d T_world_base = T_world_base_from(base);
+Result<BucketPoint, std::string> BucketPoints::common(const PaperStance& begin,
+                                                      const PaperStance& end) const {
+  const auto positions = [&](const PaperStance& stance, const std::vector<int>& rows) {
+    const Eigen::Isometry3d T_world_base = T_world_base_from(stance.base);
     std::vector<Eigen::Vector3d> p_world;
     for (const int row : rows) {
       p_world.push_back(T_world_base * check_.bucket_table().p_base_contact(row));
     }
     return p_world;
   };
-  const std::vector<int> rows_begin = check_.touching_bucket_rows(begin);
-  const std::vector<int> rows_end = check_.touching_bucket_rows(end);
+  const std::vector<int> rows_begin = check_.carrying_bucket_rows(begin);
+  const std::vector<int> rows_end = check_.carrying_bucket_rows(end);
   if (rows_begin.empty() || rows_end.empty()) {
     return tl::unexpected<std::string>("no bucket contact at one end of the phase");
   }

@@ -26,11 +26,12 @@ class BucketPoints {
   BucketPoints(const TerrainMap& terrain, const Roadmaps& roadmaps, const PaperCheck& check,
                const ArmKinematics& arm, const PlanSettings& settings);
 
-  /// Halfway between the closest pair of roadmap positions on the ground at the two ends of a
-  /// phase, put on the ground.
-  ///   errors  why there is none
-  [[nodiscard]] Result<BucketPoint, std::string> common(const BaseCoordinates& begin,
-                                                        const BaseCoordinates& end) const;
+  /// Halfway between the closest pair of roadmap positions at the two ends of a phase, put on the
+  /// ground; of the positions with which Algorithm 2 accepts either end.
+  ///   begin, end  on two wheels and the bucket (contract)
+  ///   errors      why there is none
+  [[nodiscard]] Result<BucketPoint, std::string> common(const PaperStance& begin,
+                                                        const PaperStance& end) const;
 
   /// The posture nearest to `near` that keeps the bucket there: telescope and attitude give way a
   /// little. Turn is within half a turn of `near`.

@@ -16,9 +16,11 @@ constexpr double kEndStopRad = 0.01;
 
 }  // namespace
 
-LegInverse::LegInverse(const TerrainMap& terrain, const MachineModel& machine)
+LegInverse::LegInverse(const TerrainMap& terrain, const MachineModel& machine,
+                       double min_signed_distance_m)
     : terrain_(terrain),
       machine_(machine),
+      min_distance_m_(min_signed_distance_m),
       workspace_(machine.tree.make_workspace()),
       q_(Eigen::VectorXd::Zero(machine.num_coordinates())) {
   q_.tail(machine.num_joints()) = machine.transport_posture();
@@ -41,6 +43,19 @@ double LegInverse::gap_m(std::size_t leg) const {
       machine_.tree.direction(workspace_, wheel.carrier_body, wheel.axle_carrier);
   return p.z() -
          wheel_rest(terrain_, p.head<2>(), axle, wheel.radius_m, wheel.half_width_m).height_m;
+}
+
+bool LegInverse::on_good_ground(std::size_t leg) const {
+  const WheeledLeg& wheel = machine_.legs[leg];
+  const Eigen::Vector2d p =
+      machine_.tree.position(workspace_, wheel.carrier_body, wheel.p_carrier_wheel).head<2>();
+  return terrain_.traversable_at(p) && terrain_.signed_distance_m(p) >= min_distance_m_;
+}
+
+double LegInverse::gap_m(const BaseCoordinates& base, std::size_t leg, const LegJoints& joints) {
+  q_.head<kNumBaseCoordinates>() = base;
+  update(leg, joints);
+  return gap_m(leg);
 }
 
 double LegInverse::clearance_m(const BaseCoordinates& base, std::size_t leg,
@@ -67,19 +82,24 @@ double LegInverse::heading_error_rad(std::size_t leg, double curvature_1_m) cons
 }
 
 Result<LegJoints, const char*> LegInverse::rest(const BaseCoordinates& base, std::size_t leg,
-                                                double curvature_1_m, const LegJoints& guess) {
+                                                std::optional<double> curvature_1_m,
+                                                const LegJoints& guess) {
   const WheeledLeg& wheel = machine_.legs[leg];
   const auto joint = [&](int coordinate) -> const Joint& {
     return machine_.joints[static_cast<std::size_t>(coordinate - kNumBaseCoordinates)];
   };
   q_.head<kNumBaseCoordinates>() = base;
   LegJoints joints = guess;
+  const bool rolls = curvature_1_m && wheel.steer >= 0;
   for (int i = 0; i < kMaxSteps; ++i) {
     update(leg, joints);
     const double gap = gap_m(leg);
     if (std::isnan(gap)) return tl::unexpected<const char*>("is off the map or unknown ground");
-    const double turn = wheel.steer < 0 ? 0.0 : heading_error_rad(leg, curvature_1_m);
-    if (std::abs(gap) < kHeightToleranceM && std::abs(turn) < kHeadingToleranceRad) return joints;
+    const double turn = rolls ? heading_error_rad(leg, *curvature_1_m) : 0.0;
+    if (std::abs(gap) < kHeightToleranceM && std::abs(turn) < kHeadingToleranceRad) {
+      if (on_good_ground(leg)) return joints;
+      return tl::unexpected<const char*>("would rest too close to ground no wheel may stand on");
+    }
     // One after the other: steering hardly moves the wheel up or down.
     LegJoints beside = joints;
     beside.hfe_rad += kDifferenceRad;
@@ -87,23 +107,23 @@ Result<LegJoints, const char*> LegInverse::rest(const BaseCoordinates& base, std
     const double rise = (gap_m(leg) - gap) / kDifferenceRad;
     if (!(rise > kDifferenceRad)) break;
     double steer_step = 0.0;
-    if (wheel.steer >= 0) {
+    if (rolls) {
       beside = joints;
       beside.steer_rad += kDifferenceRad;
       update(leg, beside);
-      const double by_steer = (heading_error_rad(leg, curvature_1_m) - turn) / kDifferenceRad;
+      const double by_steer = (heading_error_rad(leg, *curvature_1_m) - turn) / kDifferenceRad;
       if (std::abs(by_steer) > kDifferenceRad) steer_step = -turn / by_steer;
     }
     const Joint& hip = joint(wheel.hfe);
     joints.hfe_rad = std::clamp(joints.hfe_rad - std::clamp(gap / rise, -kMaxStepRad, kMaxStepRad),
                                 hip.lower + kEndStopRad, hip.upper - kEndStopRad);
     joints.steer_rad += std::clamp(steer_step, -kMaxStepRad, kMaxStepRad);
-    if (wheel.steer >= 0) {
+    if (rolls) {
       const Joint& steer = joint(wheel.steer);
       joints.steer_rad = std::clamp(joints.steer_rad, steer.lower, steer.upper);
     }
   }
-  return tl::unexpected<const char*>("finds no ground it could roll on");
+  return tl::unexpected<const char*>("finds no ground to rest on");
 }
 
 }  // namespace wex

@@ -185,24 +185,32 @@ bool PaperCheck::belly_clear(const CellPose& pose) const noexcept {
   });
 }
 
-// Of the configurations that touch traversable ground the one nearest to default, if there are
-// enough of them; the loop ends as soon as there are.
-int PaperCheck::grounded_row(std::size_t leg, const CellPose& pose) const noexcept {
-  const LimbTable& table = legs_[leg];
+// Rows whose contact is on traversable ground, until the visitor has enough.
+template <typename Visit>
+void PaperCheck::visit_touching(const LimbTable& table, const GroundQuads& ground, float offset_m,
+                                const CellPose& pose, const Visit& visit) const noexcept {
   const auto reach_m = static_cast<float>(paper_.touch_m);
   const auto least_m = static_cast<float>(settings_.min_signed_distance_m);
-  int touching = 0, first = -1;
   for (int block = 0; block < table.num_blocks(); ++block) {
     alignas(32) float gap_m[LimbTable::kBlock];
-    table.gaps_m(pose, dilated_, feet_[leg].radius_m, block, gap_m);
+    table.gaps_m(pose, ground, offset_m, block, gap_m);
     for (unsigned bits = within(gap_m, reach_m); bits != 0; bits &= bits - 1) {
       const int row = block * LimbTable::kBlock + std::countr_zero(bits);
       if (!(distance_.at(table.cells(pose, row)) >= least_m)) continue;
-      if (first < 0) first = row;
-      if (++touching >= paper_.min_touching) return first;
+      if (visit(row)) return;
     }
   }
-  return -1;
+}
+
+// Of the configurations that touch the one nearest to default, if there are enough of them; the
+// loop ends as soon as there are.
+int PaperCheck::grounded_row(std::size_t leg, const CellPose& pose) const noexcept {
+  int touching = 0, first = -1;
+  visit_touching(legs_[leg], dilated_, feet_[leg].radius_m, pose, [&](int row) {
+    if (first < 0) first = row;
+    return ++touching >= paper_.min_touching;
+  });
+  return touching >= paper_.min_touching ? first : -1;
 }
 
 int PaperCheck::swing_row(std::size_t leg, const CellPose& pose) const noexcept {
@@ -315,20 +323,19 @@ void PaperCheck::balance_with_arm(const Eigen::Isometry3d& T_world_base, const C
   stance.rejection = PaperRejection::kArmInGround;
 }
 
-// Rows at which the bucket stands on traversable ground, until the visitor has enough.
-template <typename Visit>
-void PaperCheck::visit_touching(const CellPose& pose, const Visit& visit) const noexcept {
-  const auto reach_m = static_cast<float>(paper_.touch_m);
-  const auto least_m = static_cast<float>(settings_.min_signed_distance_m);
-  for (int block = 0; block < bucket_.num_blocks(); ++block) {
-    alignas(32) float gap_m[LimbTable::kBlock];
-    bucket_.gaps_m(pose, height_, 0.0F, block, gap_m);
-    for (unsigned bits = within(gap_m, reach_m); bits != 0; bits &= bits - 1) {
-      const int row = block * LimbTable::kBlock + std::countr_zero(bits);
-      if (!(distance_.at(bucket_.cells(pose, row)) >= least_m)) continue;
-      if (visit(row)) return;
-    }
+double PaperCheck::margin_on_bucket_m(const Eigen::Isometry3d& T_world_base,
+                                      const Eigen::Vector3d& moment_base, const PaperStance& stance,
+                                      int row) const noexcept {
+  std::array<Eigen::Vector2d, 3> corners;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < kNumWheels; ++i) {
+    if (!stance.contacts[i]) continue;
+    corners[count++] =
+        (T_world_base * legs_[i].p_base_contact(stance.vertex[i])).template head<2>();
   }
+  corners[2] = (T_world_base * bucket_.p_base_contact(row)).template head<2>();
+  const Eigen::Vector3d com = T_world_base * ((moment_base + bucket_.moment_base(row)) / mass_kg_);
+  return hull_margin_m(com.head<2>(), corners);
 }
 
 // Two wheels stand: the arm is grounded if enough of its configurations touch; of those the one
@@ -340,21 +347,11 @@ void PaperCheck::support_with_arm(const Eigen::Isometry3d& T_world_base, const C
     stance.rejection = PaperRejection::kTooFewLegs;
     return;
   }
-  std::array<Eigen::Vector2d, 3> corners;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < kNumWheels; ++i) {
-    if (!stance.contacts[i]) continue;
-    corners[count++] =
-        (T_world_base * legs_[i].p_base_contact(stance.vertex[i])).template head<2>();
-  }
   int touching = 0, row_found = -1;
-  visit_touching(pose, [&](int row) {
+  visit_touching(bucket_, height_, 0.0F, pose, [&](int row) {
     ++touching;
     if (row_found < 0) {
-      corners[2] = (T_world_base * bucket_.p_base_contact(row)).template head<2>();
-      const Eigen::Vector3d com =
-          T_world_base * ((moment_base + bucket_.moment_base(row)) / mass_kg_);
-      const double margin_m = hull_margin_m(com.head<2>(), corners);
+      const double margin_m = margin_on_bucket_m(T_world_base, moment_base, stance, row);
       if (margin_m >= settings_.min_stability_margin_m) {
         row_found = row;
         stance.margin_m = margin_m;
@@ -379,17 +376,64 @@ std::array<int, kNumWheels> PaperCheck::ground_legs(const BaseCoordinates& base)
   return rows;
 }
 
-std::vector<int> PaperCheck::touching_bucket_rows(const BaseCoordinates& base) const {
-  const CellPose pose(T_world_base_from(base), dilated_);
+std::vector<int> PaperCheck::touching_vertices(const BaseCoordinates& base, std::size_t leg) const {
+  std::vector<int> vertices;
+  visit_touching(legs_[leg], dilated_, feet_[leg].radius_m,
+                 CellPose(T_world_base_from(base), dilated_), [&](int row) {
+                   vertices.push_back(legs_[leg].vertex(row));
+                   return false;
+                 });
+  return vertices;
+}
+
+int PaperCheck::swing_vertex(const BaseCoordinates& base, std::size_t leg) const noexcept {
+  const int row = swing_row(leg, CellPose(T_world_base_from(base), dilated_));
+  return row < 0 ? -1 : legs_[leg].vertex(row);
+}
+
+Eigen::Vector3d PaperCheck::moment_but_arm(const PaperStance& stance) const noexcept {
+  Eigen::Vector3d moment_base = fixed_moment_base_;
+  for (std::size_t i = 0; i < kNumWheels; ++i) {
+    moment_base += legs_[i].moment_base(stance.vertex[i]);
+  }
+  return moment_base;
+}
+
+std::vector<int> PaperCheck::counterweights(const PaperStance& stance) const {
+  const Eigen::Isometry3d T_world_base = T_world_base_from(stance.base);
+  std::array<Eigen::Vector2d, 3> corners;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < kNumWheels; ++i) {
+    if (!stance.contacts[i]) continue;
+    corners[count++] = (T_world_base * legs_[i].p_base_contact(stance.vertex[i])).head<2>();
+  }
+  const MarginInMoment margin(T_world_base, moment_but_arm(stance), mass_kg_, corners);
+  std::vector<std::pair<float, int>> by_margin;
+  for (int row = 0; row < swing_.size(); ++row) {
+    const Eigen::Vector3f moment = swing_.moment_base(row).cast<float>();
+    const float margin_m = margin.at(moment.x(), moment.y(), moment.z());
+    if (static_cast<double>(margin_m) < settings_.min_stability_margin_m) continue;
+    by_margin.emplace_back(-margin_m, swing_.vertex(row));
+  }
+  std::sort(by_margin.begin(), by_margin.end());
+  std::vector<int> vertices;
+  for (const auto& [margin_m, vertex] : by_margin) vertices.push_back(vertex);
+  return vertices;
+}
+
+std::vector<int> PaperCheck::carrying_bucket_rows(const PaperStance& stance) const {
+  const Eigen::Isometry3d T_world_base = T_world_base_from(stance.base);
+  const Eigen::Vector3d moment_base = moment_but_arm(stance);
   std::vector<int> rows;
-  visit_touching(pose, [&](int row) {
-    rows.push_back(row);
+  visit_touching(bucket_, height_, 0.0F, CellPose(T_world_base, dilated_), [&](int row) {
+    const double margin_m = margin_on_bucket_m(T_world_base, moment_base, stance, row);
+    if (margin_m >= settings_.min_stability_margin_m) rows.push_back(row);
     return false;
   });
   return rows;
 }
 
-PaperStance PaperCheck::stand(const BaseCoordinates& base) const noexcept {
+PaperStance PaperCheck::stand(const BaseCoordinates& base, int lifted) const noexcept {
   PaperStance stance;
   stance.base = base;
   const auto rejected = [&](PaperRejection why) {
@@ -407,7 +451,7 @@ PaperStance PaperCheck::stand(const BaseCoordinates& base) const noexcept {
 
   int grounded = 0;
   for (std::size_t i = 0; i < kNumWheels; ++i) {
-    stance.vertex[i] = grounded_row(i, pose);
+    stance.vertex[i] = static_cast<int>(i) == lifted ? -1 : grounded_row(i, pose);
     stance.contacts[i] = stance.vertex[i] >= 0;
     grounded += stance.contacts[i];
     if (static_cast<int>(i) - grounded >= 2) return rejected(PaperRejection::kTooFewLegs);
@@ -436,13 +480,6 @@ PaperStance PaperCheck::stand(const BaseCoordinates& base) const noexcept {
   return stance;
 }
 
-PaperStance PaperCheck::stand(const Pose2& pose) const noexcept {
-  if (!terrain_->known({pose.x_m, pose.y_m})) {
-    PaperStance nowhere;
-    nowhere.rejection = PaperRejection::kOffMap;
-    return nowhere;
-  }
-  return stand(base_at(pose));
-}
+PaperStance PaperCheck::stand(const Pose2& pose) const noexcept { return stand(base_at(pose)); }
 
 }  // namespace wex

@@ -62,11 +62,12 @@ class PaperCheck {
 
   /// Algorithm 1: of 4 heights x 4 normals (raw and filtered, here and at the nearest traversable
   /// place) the cheapest: wheels of the default posture that find no ground weigh most, then tilt.
-  /// NaN height where nothing is known.
+  /// All NaN off the map and over unknown ground.
   [[nodiscard]] BaseCoordinates base_at(const Pose2& pose) const noexcept;
 
   /// Algorithm 2 with the base given.
-  [[nodiscard]] PaperStance stand(const BaseCoordinates& base) const noexcept;
+  ///   lifted  a leg that is to swing though it could stand; -1: none
+  [[nodiscard]] PaperStance stand(const BaseCoordinates& base, int lifted = -1) const noexcept;
 
   /// Both.
   [[nodiscard]] PaperStance stand(const Pose2& pose) const noexcept;
@@ -74,10 +75,19 @@ class PaperCheck {
   /// Legs alone, as stand() grounds them: rows of vertices, -1 where a leg is not grounded.
   [[nodiscard]] std::array<int, kNumWheels> ground_legs(const BaseCoordinates& base) const noexcept;
 
-  /// Rows of the bucket's contact table that touch the ground, nearest to default first. Allocates.
-  [[nodiscard]] std::vector<int> touching_bucket_rows(const BaseCoordinates& base) const;
+  /// Vertices of a leg that touch traversable ground, nearest to default first. Allocates.
+  [[nodiscard]] std::vector<int> touching_vertices(const BaseCoordinates& base,
+                                                   std::size_t leg) const;
+  /// The first vertex of a leg that is clear of the ground; -1 if none is.
+  [[nodiscard]] int swing_vertex(const BaseCoordinates& base, std::size_t leg) const noexcept;
+
+  /// Vertices of the arm that balance a stance on three wheels (contract), the most central centre
+  /// of mass first, whatever may be in their way. Allocates.
+  [[nodiscard]] std::vector<int> counterweights(const PaperStance& stance) const;
+  /// Rows of the bucket's contact table that touch the ground and make a stable tripod of a stance
+  /// on two wheels (contract), nearest to default first. Allocates.
+  [[nodiscard]] std::vector<int> carrying_bucket_rows(const PaperStance& stance) const;
   [[nodiscard]] const LimbTable& bucket_table() const noexcept { return bucket_; }
-  [[nodiscard]] const LimbTable& leg_table(std::size_t leg) const noexcept { return legs_[leg]; }
   [[nodiscard]] const PaperSettings& paper() const noexcept { return paper_; }
 
  private:
@@ -92,8 +102,13 @@ class PaperCheck {
                         const Eigen::Vector3d& moment_base, PaperStance& stance) const noexcept;
   void support_with_arm(const Eigen::Isometry3d& T_world_base, const CellPose& pose,
                         const Eigen::Vector3d& moment_base, PaperStance& stance) const noexcept;
+  [[nodiscard]] Eigen::Vector3d moment_but_arm(const PaperStance& stance) const noexcept;
+  [[nodiscard]] double margin_on_bucket_m(const Eigen::Isometry3d& T_world_base,
+                                          const Eigen::Vector3d& moment_base,
+                                          const PaperStance& stance, int row) const noexcept;
   template <typename Visit>
-  void visit_touching(const CellPose& pose, const Visit& visit) const noexcept;
+  void visit_touching(const LimbTable& table, const GroundQuads& ground, float offset_m,
+                      const CellPose& pose, const Visit& visit) const noexcept;
 
   /// What Algorithm 1 knows of a leg: the wheel in default posture, and its way up and down.
   struct DefaultFoot {

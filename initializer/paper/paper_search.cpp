@@ -73,7 +73,8 @@ bool PaperSearch::is_valid(const Pose2& pose) {
 
 void PaperSearch::lose(PaperFailure failure) {
   ++lost_[static_cast<std::size_t>(failure.stage)];
-  last_failure_ = std::move(failure);
+  lost_paths_.add(
+      {failure.where, std::string(describe(failure.stage)) + ": " + failure.why, failure.stepping});
 }
 
 void PaperSearch::consider(const DrivePath& path) {
@@ -94,7 +95,10 @@ void PaperSearch::consider(const DrivePath& path) {
   const PlanVerdict verdict = verify_plan(terrain_, machine_, plan, settings_);
   if (!verdict.ok) {
     const Eigen::VectorXd& q = plan.nodes[std::min(verdict.node, plan.nodes.size() - 1)].q;
-    lose({PaperStage::kVerified, {q[kBaseX], q[kBaseY], q[kBaseYaw]}, verdict.violation});
+    const bool stepping =
+        std::any_of(plan.nodes.begin(), plan.nodes.end(),
+                    [](const WholeBodyNode& node) { return node.contacts != kDrivingContacts; });
+    lose({PaperStage::kVerified, {q[kBaseX], q[kBaseY], q[kBaseYaw]}, verdict.violation, stepping});
     return report(nullptr);
   }
   plan.min_stability_margin_m = verdict.min_stability_margin_m;
@@ -119,13 +123,22 @@ Result<Plan> PaperSearch::run() {
     consider(**path);
   }
   report(nullptr);
-  if (!best_) return fail(ErrorCode::kNoPlan, census());
+  if (!best_) return fail(ErrorCode::kNoPlan, sentence());
   best_->iterations = search_->iterations();
   best_->total_time_s = elapsed_s();
   return *std::move(best_);
 }
 
-std::string PaperSearch::census() const {
+SearchCensus PaperSearch::census() const {
+  SearchCensus census = lost_paths_;
+  census.count_poses(num_poses_);
+  for (std::size_t i = 1; i < rejections_.size(); ++i) {
+    census.count(describe(static_cast<PaperRejection>(i)), rejections_[i]);
+  }
+  return census;
+}
+
+std::string PaperSearch::sentence() const {
   char text[320];
   std::snprintf(text, sizeof text,
                 "no plan from start to goal in %.2f s of computing and %d iterations; ",
@@ -141,28 +154,22 @@ std::string PaperSearch::census() const {
       first = false;
     }
     const Eigen::Vector2d origin = terrain_.map_origin_m();
-    std::snprintf(text, sizeof text,
-                  "), the last at (%.2f, %.2f): ", last_failure_->where.x_m + origin.x(),
-                  last_failure_->where.y_m + origin.y());
-    sentence += text + last_failure_->why + "; ";
+    const FailedPath& last = lost_paths_.failed_paths().back();
+    std::snprintf(text, sizeof text, "), the last at (%.2f, %.2f): ", last.where.x_m + origin.x(),
+                  last.where.y_m + origin.y());
+    sentence += text + last.why + "; ";
   }
   const std::uint64_t refused = num_poses_ - rejections_[0];
   std::snprintf(text, sizeof text,
                 "%llu of %llu poses were refused: ", static_cast<unsigned long long>(refused),
                 static_cast<unsigned long long>(num_poses_));
   sentence += text;
-  std::vector<std::size_t> reasons;
-  for (std::size_t i = 1; i < rejections_.size(); ++i) {
-    if (rejections_[i] > 0) reasons.push_back(i);
-  }
-  std::sort(reasons.begin(), reasons.end(),
-            [this](std::size_t a, std::size_t b) { return rejections_[a] > rejections_[b]; });
-  for (std::size_t k = 0; k < reasons.size(); ++k) {
-    std::snprintf(
-        text, sizeof text, "%s%s %.0f %%", k == 0 ? "" : ", ",
-        describe(static_cast<PaperRejection>(reasons[k])),
-        100.0 * static_cast<double>(rejections_[reasons[k]]) / static_cast<double>(refused));
+  bool first = true;
+  for (const auto& [count, reason] : census().rejections()) {
+    std::snprintf(text, sizeof text, "%s%s %.0f %%", first ? "" : ", ", reason.c_str(),
+                  100.0 * static_cast<double>(count) / static_cast<double>(refused));
     sentence += text;
+    first = false;
   }
   return sentence;
 }
@@ -170,7 +177,7 @@ std::string PaperSearch::census() const {
 Result<Plan> make_paper_plan(const TerrainMap& terrain, const MachineModel& machine,
                              const Task& task, const PlanSettings& settings,
                              const std::function<void(const PlanProgress&)>& observer,
-                             double begin_s) {
+                             double begin_s, SearchCensus& turned_down) {
   const double offline_s = thread_cpu_time_s();
   const auto roadmaps = load_or_build_roadmaps(machine);
   if (!roadmaps) return tl::unexpected<Error>(roadmaps.error());
@@ -179,8 +186,10 @@ Result<Plan> make_paper_plan(const TerrainMap& terrain, const MachineModel& mach
   if (!check) return tl::unexpected<Error>(check.error());
   auto post_processing = PostProcessing::build(terrain, machine, *roadmaps, *check, settings);
   if (!post_processing) return tl::unexpected<Error>(post_processing.error());
-  return PaperSearch(terrain, machine, task, settings, observer, *check, *post_processing, begin_s)
-      .run();
+  PaperSearch search(terrain, machine, task, settings, observer, *check, *post_processing, begin_s);
+  Result<Plan> plan = search.run();
+  turned_down = search.census();
+  return plan;
 }
 
 }  // namespace wex

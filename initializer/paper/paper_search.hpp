@@ -11,6 +11,7 @@
 #include "initializer/make_plan.hpp"
 #include "initializer/paper/paper_check.hpp"
 #include "initializer/paper/post_processing.hpp"
+#include "initializer/search_census.hpp"
 
 namespace wex {
 
@@ -30,6 +31,8 @@ class PaperSearch {
   ///   errors  kNoPlan: with what was refused, paths lost after they were found among it;
   ///           kInternal: OMPL failed
   [[nodiscard]] Result<Plan> run();
+  /// Refused poses by Algorithm 2's reasons, and where paths were lost.
+  [[nodiscard]] SearchCensus census() const;
 
  private:
   [[nodiscard]] double elapsed_s() const;
@@ -38,7 +41,7 @@ class PaperSearch {
   void report(const Plan* better);
   void consider(const DrivePath& path);
   void lose(PaperFailure failure);
-  [[nodiscard]] std::string census() const;
+  [[nodiscard]] std::string sentence() const;
 
   const TerrainMap& terrain_;
   const MachineModel& machine_;
@@ -55,7 +58,7 @@ class PaperSearch {
   std::uint64_t num_poses_ = 0;
   std::array<std::uint64_t, kNumPaperRejections> rejections_{};
   std::array<int, kNumPaperStages> lost_{};
-  std::optional<PaperFailure> last_failure_;
+  SearchCensus lost_paths_;
 };
 
 /// Roadmaps from the cache (or built: the paper's offline computation, not counted against the
@@ -63,6 +66,6 @@ class PaperSearch {
 [[nodiscard]] Result<Plan> make_paper_plan(const TerrainMap& terrain, const MachineModel& machine,
                                            const Task& task, const PlanSettings& settings,
                                            const std::function<void(const PlanProgress&)>& observer,
-                                           double begin_s);
+                                           double begin_s, SearchCensus& turned_down);
 
 }  // namespace wex

@@ -1,6 +1,7 @@
 #include "initializer/paper/post_processing.hpp"
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -20,20 +21,6 @@ constexpr double kLimbStep = 0.1;  // rad or m from node to node
 constexpr double kRounding = 1e-9;
 
 std::string name_of(std::size_t leg) { return "wheel " + std::string(kLimbNames[leg]); }
-
-const char* describe(ArmPathError error) {
-  switch (error) {
-    case ArmPathError::kStartInvalid:
-      return "the arm's motion would begin in collision";
-    case ArmPathError::kGoalInvalid:
-      return "the arm's motion would end in collision";
-    case ArmPathError::kNoPath:
-      return "the arm finds no way over its roadmap";
-    case ArmPathError::kTooManyChecks:
-      return "the arm finds no way over its roadmap in time";
-  }
-  return "the arm does not move";
-}
 
 }  // namespace
 
@@ -68,7 +55,8 @@ struct PostProcessing::Impl {
         mover(machine_model, poser.arm(), collision, poser.ground(),
               plan_settings.min_stability_margin_m, motion),
         planner(machine_model, maps.limbs.back()),
-        buckets(terrain_map, maps, paper_check, poser.arm(), plan_settings) {}
+        buckets(terrain_map, maps, paper_check, poser.arm(), plan_settings),
+        workspace(machine_model.tree.make_workspace()) {}
 
   const MachineModel& machine;
   const PaperCheck& check;
@@ -79,6 +67,7 @@ struct PostProcessing::Impl {
   ArmMover mover;
   ArmPathPlanner planner;
   BucketPoints buckets;
+  KinematicTree::Workspace workspace;
 
   // Of the path in hand.
   std::vector<Station> stations;
@@ -88,9 +77,13 @@ struct PostProcessing::Impl {
   ContactFlags contacts{};
   std::optional<BucketPoint> bucket;
   std::size_t station = 0;
+  std::optional<std::size_t> stuck_leg;  ///< that could not roll on when the last drive failed
 
   [[nodiscard]] tl::unexpected<PaperFailure> failure(PaperStage stage, std::string why) const {
-    return tl::unexpected<PaperFailure>({stage, stations[station].pose, std::move(why)});
+    const bool stepping = std::any_of(stances.begin(), stances.end(), [](const PaperStance& s) {
+      return s.ok() && s.contacts != kDrivingContacts;
+    });
+    return tl::unexpected<PaperFailure>({stage, stations[station].pose, std::move(why), stepping});
   }
   [[nodiscard]] const Eigen::VectorXd& now() const { return nodes.back().q; }
   [[nodiscard]] bool four_wheels() const { return contacts == kDrivingContacts; }
@@ -123,15 +116,20 @@ struct PostProcessing::Impl {
     nodes.back().stop = true;
   }
 
+  Result<LegJoints, const char*> standing(std::size_t k, std::size_t leg, Eigen::VectorXd q,
+                                          const std::optional<StandingLeg>& before = std::nullopt);
   Done place_legs(std::size_t k, const ContactFlags& on_ground, Eigen::VectorXd& q);
   Done drive_to(std::size_t k);
   Done change_contacts(std::size_t from);
+  Done step_over(std::size_t from, std::size_t leg);
   bool can_change_at(std::size_t k, std::size_t from);
+  std::optional<LegJoints> swing_joints(std::size_t k, std::size_t leg, int vertex);
   Done change_here(std::size_t k, std::size_t from);
   Done move_arm(const ArmPosture& to);
   Done lower_bucket(std::size_t k);
   Done raise_bucket();
-  Done balance(std::size_t k, const ContactFlags& next);
+  ArmPosture counterweight(std::size_t k, const Footing& footing, const Eigen::VectorXd& q);
+  Done balance(std::size_t k, std::size_t leg, const LegJoints& swung);
   void move_leg(std::size_t leg, const LegJoints& to, bool lifting);
   void write_arm(ArmPosture posture, Eigen::VectorXd& q) const;
   [[nodiscard]] double margin_m(const Eigen::VectorXd& q, const ContactFlags& on_ground);
@@ -148,6 +146,22 @@ double PostProcessing::Impl::margin_m(const Eigen::VectorXd& q, const ContactFla
   return poser.footing(q, on_ground).margin_m(poser.arm().moment_base(poser.arm().posture_of(q)));
 }
 
+// A leg on the ground of a station, away from the chassis and the other legs as they are in q.
+Result<LegJoints, const char*> PostProcessing::Impl::standing(
+    std::size_t k, std::size_t leg, Eigen::VectorXd q, const std::optional<StandingLeg>& before) {
+  using Part = CollisionModel::Part;
+  constexpr auto kFirstLeg = static_cast<std::size_t>(Part::kLF);
+  std::bitset<CollisionModel::kNumParts> others;
+  for (std::size_t i = 0; i < kNumWheels; ++i) others[kFirstLeg + i] = i != leg;
+  others[static_cast<std::size_t>(Part::kChassis)] = true;
+  const auto clear = [&](const LegJoints& joints) {
+    poser.write_leg(joints, leg, q);
+    machine.tree.update(q, workspace);
+    return collision.clear(workspace, static_cast<Part>(kFirstLeg + leg), others, 0.0);
+  };
+  return poser.standing(stances[k].base, curvature[k], leg, clear, before);
+}
+
 // Base of a station; standing legs on the ground, swinging ones as they are as long as that is
 // clear, else at the station's own vertex.
 PostProcessing::Impl::Done PostProcessing::Impl::place_legs(std::size_t k,
@@ -157,17 +171,23 @@ PostProcessing::Impl::Done PostProcessing::Impl::place_legs(std::size_t k,
   q.head<kNumBaseCoordinates>() = stance.base;
   for (std::size_t i = 0; i < kNumWheels; ++i) {
     if (on_ground[i]) {
-      const auto joints = poser.standing(stance.base, curvature[k], i);
-      if (!joints) return failure(PaperStage::kLegs, name_of(i) + " " + joints.error());
+      std::optional<StandingLeg> before;
+      if (!nodes.empty()) before = {now().head<kNumBaseCoordinates>(), poser.read_leg(now(), i)};
+      const auto joints = standing(k, i, q, before);
+      if (!joints) {
+        stuck_leg = i;
+        return failure(PaperStage::kLegs, name_of(i) + " " + joints.error());
+      }
       poser.write_leg(*joints, i, q);
       continue;
     }
     const double clear_m = check.paper().swing_clearance_m;
     if (poser.clearance_m(stance.base, i, poser.read_leg(q, i)) >= clear_m) continue;
-    if (stance.contacts[i]) {
+    const int vertex = stance.contacts[i] ? check.swing_vertex(stance.base, i) : stance.vertex[i];
+    if (vertex < 0) {
       return failure(PaperStage::kLegs, name_of(i) + " would swing through the ground");
     }
-    poser.write_leg(poser.vertex_joints(i, stance.vertex[i]), i, q);
+    poser.write_leg(poser.vertex_joints(i, vertex), i, q);
   }
   return {};
 }
@@ -185,7 +205,7 @@ PostProcessing::Impl::Done PostProcessing::Impl::drive_to(std::size_t k) {
   } else if (!four_wheels() && !(margin_m(q, contacts) >= settings.min_stability_margin_m)) {
     // The counterweight goes where this station wants it while the last one stands.
     if (stances[k].contacts == contacts) {
-      if (auto moved = move_arm(poser.vertex_posture(stances[k].vertex[kArmIndex])); !moved) {
+      if (auto moved = move_arm(counterweight(k, poser.footing(q, contacts), q)); !moved) {
         return moved;
       }
     }
@@ -217,11 +237,23 @@ PostProcessing::Impl::Done PostProcessing::Impl::move_arm(const ArmPosture& to) 
   if ((goal - q).cwiseAbs().maxCoeff() < kRounding) return {};
   const Footing footing = poser.footing(q, contacts);
   Eigen::VectorXd tried = q;
+  const auto why_not = [&](ArmPathError error) -> std::string {
+    if (error == ArmPathError::kStartInvalid || error == ArmPathError::kGoalInvalid) {
+      const bool start = error == ArmPathError::kStartInvalid;
+      const char* fault =
+          mover.fault(footing, tried, poser.arm().posture_of(start ? q : goal), false);
+      return std::string(start ? "the arm's motion would begin where "
+                               : "the arm's motion would end where ") +
+             (fault != nullptr ? fault : "it collides");
+    }
+    return error == ArmPathError::kNoPath ? "the arm finds no way over its roadmap"
+                                          : "the arm finds no way over its roadmap in time";
+  };
   const auto path = planner.plan(arm_of(q), arm_of(goal), [&](const Eigen::VectorXd& part) {
     write(part, tried);
     return mover.fault(footing, tried, poser.arm().posture_of(tried), false) == nullptr;
   });
-  if (!path) return failure(PaperStage::kArm, describe(path.error()));
+  if (!path) return failure(PaperStage::kArm, why_not(path.error()));
   nodes.back().stop = true;
   for (std::size_t i = 1; i < path->postures.size(); ++i) {
     write(path->postures[i], q);
@@ -277,10 +309,45 @@ PostProcessing::Impl::Done PostProcessing::Impl::raise_bucket() {
   return {};
 }
 
-// The arm as counterweight before a wheel leaves the ground, if it does not balance as it is.
-PostProcessing::Impl::Done PostProcessing::Impl::balance(std::size_t k, const ContactFlags& next) {
-  if (next[kArmIndex] || margin_m(now(), next) >= settings.min_stability_margin_m) return {};
-  return move_arm(poser.vertex_posture(stances[k].vertex[kArmIndex]));
+// Of the vertices that balance a station the most central one with nothing in its way; Algorithm 2
+// knows of the bucket's contact point alone.
+ArmPosture PostProcessing::Impl::counterweight(std::size_t k, const Footing& footing,
+                                               const Eigen::VectorXd& q) {
+  Eigen::VectorXd tried = q;
+  if (num_contacts(stances[k].contacts) == 3 && !stances[k].contacts[kArmIndex]) {
+    for (const int vertex : check.counterweights(stances[k])) {
+      const ArmPosture posture = poser.vertex_posture(vertex);
+      if (mover.fault(footing, tried, posture, false) == nullptr) return posture;
+    }
+  }
+  return poser.vertex_posture(stances[k].vertex[kArmIndex]);
+}
+
+// The arm as counterweight before a wheel leaves the ground, if it does not balance as it is: with
+// the leg where it stands and where it is going to be.
+PostProcessing::Impl::Done PostProcessing::Impl::balance(std::size_t k, std::size_t leg,
+                                                         const LegJoints& swung) {
+  ContactFlags next = contacts;
+  next[leg] = false;
+  Eigen::VectorXd q = now();
+  poser.write_leg(swung, leg, q);
+  const double least_m = settings.min_stability_margin_m;
+  if (next[kArmIndex] || (margin_m(now(), next) >= least_m && margin_m(q, next) >= least_m)) {
+    return {};
+  }
+  return move_arm(counterweight(k, poser.footing(q, next), q));
+}
+
+// A leg in the air at a station: at the given vertex, or at the first that is clear there.
+std::optional<LegJoints> PostProcessing::Impl::swing_joints(std::size_t k, std::size_t leg,
+                                                            int vertex) {
+  const LegJoints wanted = poser.vertex_joints(leg, vertex);
+  if (poser.clearance_m(stances[k].base, leg, wanted) >= check.paper().swing_clearance_m) {
+    return wanted;
+  }
+  const int other = check.swing_vertex(stances[k].base, leg);
+  if (other < 0) return std::nullopt;
+  return poser.vertex_joints(leg, other);
 }
 
 // Whether everything that stands before or after can stand at a station, and what swings before or
@@ -288,13 +355,10 @@ PostProcessing::Impl::Done PostProcessing::Impl::balance(std::size_t k, const Co
 bool PostProcessing::Impl::can_change_at(std::size_t k, std::size_t from) {
   const ContactFlags all = both(stances[from].contacts, stances[from + 1].contacts);
   for (std::size_t i = 0; i < kNumWheels; ++i) {
-    if (all[i] && !poser.standing(stances[k].base, curvature[k], i)) return false;
+    if (all[i] && !standing(k, i, now())) return false;
     for (const PaperStance* side : {&stances[from], &stances[from + 1]}) {
       if (side->contacts[i]) continue;
-      const LegJoints swing = poser.vertex_joints(i, side->vertex[i]);
-      if (!(poser.clearance_m(stances[k].base, i, swing) >= check.paper().swing_clearance_m)) {
-        return false;
-      }
+      if (!swing_joints(k, i, side->vertex[i])) return false;
     }
   }
   return true;
@@ -308,14 +372,16 @@ PostProcessing::Impl::Done PostProcessing::Impl::change_here(std::size_t k, std:
     if (limb == kArmIndex) {
       if (auto moved = next[limb] ? lower_bucket(k) : raise_bucket(); !moved) return moved;
     } else if (next[limb]) {
-      const auto joints = poser.standing(stances[k].base, curvature[k], limb);
+      const auto joints = standing(k, limb, now());
       if (!joints) return failure(PaperStage::kLegs, name_of(limb) + " " + joints.error());
       move_leg(limb, *joints, false);
       make_contact(limb);
     } else {
-      if (auto balanced = balance(from + 1, next); !balanced) return balanced;
+      const auto swing = swing_joints(k, limb, after.vertex[limb]);
+      WEX_EXPECTS(swing.has_value());  // that is what can_change_at made sure of
+      if (auto balanced = balance(from + 1, limb, *swing); !balanced) return balanced;
       break_contact(limb);
-      move_leg(limb, poser.vertex_joints(limb, after.vertex[limb]), true);
+      move_leg(limb, *swing, true);
     }
   }
   nodes.back().stop = true;
@@ -329,7 +395,7 @@ PostProcessing::Impl::Done PostProcessing::Impl::change_contacts(std::size_t fro
   if (stances[to].contacts[kArmIndex] && !contacts[kArmIndex]) {
     std::size_t end = to;
     while (end + 1 < stances.size() && stances[end + 1].contacts[kArmIndex]) ++end;
-    auto point = buckets.common(stances[to].base, stances[end].base);
+    auto point = buckets.common(stances[to], stances[end]);
     if (!point) return failure(PaperStage::kBucket, point.error());
     bucket = *std::move(point);
   }
@@ -342,6 +408,20 @@ PostProcessing::Impl::Done PostProcessing::Impl::change_contacts(std::size_t fro
   }
   if (auto driven = drive_to(to); !driven) return driven;
   return change_here(to, from);
+}
+
+// On four wheels a leg whose vertex at the next station cannot be rolled to changes its contact all
+// the same: lifted from where it stands, over three wheels and the counterweight, and put down.
+PostProcessing::Impl::Done PostProcessing::Impl::step_over(std::size_t from, std::size_t leg) {
+  const PaperStance lifted = check.stand(stances[from + 1].base, static_cast<int>(leg));
+  if (!lifted.ok()) {
+    return failure(PaperStage::kLegs, name_of(leg) +
+                                          " cannot be lifted over what it cannot roll "
+                                          "over: " +
+                                          wex::describe(lifted.rejection));
+  }
+  stances[from + 1] = lifted;
+  return change_contacts(from);
 }
 
 Result<std::vector<WholeBodyNode>, PaperFailure> PostProcessing::Impl::run(const DrivePath& path) {
@@ -369,9 +449,19 @@ Result<std::vector<WholeBodyNode>, PaperFailure> PostProcessing::Impl::run(const
   add(q);
   nodes.back().stop = true;
   for (std::size_t i = 0; i + 1 < stations.size(); ++i) {
-    const bool same = stances[i + 1].contacts == contacts;
-    if (auto done = same ? drive_to(i + 1) : change_contacts(i); !done) {
-      return tl::unexpected<PaperFailure>(done.error());
+    stuck_leg.reset();
+    Done done = stances[i + 1].contacts == contacts ? drive_to(i + 1) : change_contacts(i);
+    if (!done && stuck_leg && four_wheels() && i + 2 < stations.size() &&
+        stances[i + 1].contacts == kDrivingContacts) {
+      done = step_over(i, *stuck_leg);
+    }
+    if (!done) return tl::unexpected<PaperFailure>(done.error());
+  }
+  for (const MotionNode& node : nodes) {
+    machine.tree.update(node.q, workspace);
+    station = node.state;
+    if (!collision.clear(workspace, 0.0)) {
+      return failure(PaperStage::kLegs, "limbs would touch each other");
     }
   }
   turn_wheels(machine, nodes);

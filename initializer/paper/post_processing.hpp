@@ -25,7 +25,8 @@ inline constexpr std::size_t kNumPaperStages = 6;
 struct PaperFailure {
   PaperStage stage{};
   Pose2 where;
-  std::string why;  ///< part of a sentence
+  std::string why;        ///< part of a sentence
+  bool stepping = false;  ///< the path asks for other contacts than four wheels somewhere
 };
 
 /// The paper's post-processing: from a path of the base to a motion of the whole body. Contacts

@@ -56,7 +56,7 @@ TEST(LegInverse, RestsASpreadLegAndRollsAlongThePath) {
   const TerrainMap map =
       make_map(30.0, 30.0, [](double x, double y) { return 0.1 * x + 0.05 * y; });
   const MachineModel& machine = test_machine();
-  LegInverse inverse(map, machine);
+  LegInverse inverse(map, machine, 0.15);
   BaseCoordinates base;
   base << 1.0, -1.0, 1.0, 0.4, 0.0, 0.0;
   const double curvature = 0.1;
@@ -87,9 +87,23 @@ TEST(LegInverse, RestsASpreadLegAndRollsAlongThePath) {
   }
 }
 
+TEST(LegInverse, KeepsTheSteeringIfNotAskedToRoll) {
+  const TerrainMap map = flat_map(20.0, 20.0);
+  LegInverse inverse(map, test_machine(), 0.15);
+  BaseCoordinates base;
+  base << 0.0, 0.0, 1.0, 0.0, 0.0, 0.0;
+  const auto joints = inverse.rest(base, 0, std::nullopt, {0.3, -0.2, 0.4});
+  ASSERT_TRUE(joints) << joints.error();
+  EXPECT_EQ(joints->steer_rad, 0.4);
+  EXPECT_EQ(joints->haa_rad, 0.3);
+  const auto rolling = inverse.rest(base, 0, 0.0, {0.3, -0.2, 0.4});
+  ASSERT_TRUE(rolling) << rolling.error();
+  EXPECT_NEAR(rolling->steer_rad, -0.3, 0.02);  // straight ahead
+}
+
 TEST(LegInverse, SaysWhyAWheelCannotStand) {
   const TerrainMap map = flat_map(10.0, 10.0);
-  LegInverse inverse(map, test_machine());
+  LegInverse inverse(map, test_machine(), 0.15);
   BaseCoordinates base;
   base << 0.0, 0.0, 4.0, 0.0, 0.0, 0.0;  // far above any reach
   EXPECT_FALSE(inverse.rest(base, 0, 0.0, {}));

@@ -68,6 +68,18 @@ TEST(SearchCensus, GathersFailuresByPlaceAndKind) {
   EXPECT_FALSE(places[2].last.stepping);
 }
 
+TEST(SearchCensus, ASearchMayHaveReasonsOfItsOwn) {
+  SearchCensus census;
+  census.count_poses(10);
+  census.count("no contact for the bucket", 1);
+  census.count("a swing leg without clearance", 3);
+  census.count("too much tilt", 0);
+  EXPECT_THAT(
+      census.sentence(),
+      Eq("4 of 10 poses tried were rejected: a swing leg without clearance 75 %, no contact "
+         "for the bucket 25 %"));
+}
+
 TEST(SearchCensus, NothingTriedIsSaidToo) {
   EXPECT_EQ(SearchCensus{}.sentence(), "0 of 0 poses tried were rejected");
 }

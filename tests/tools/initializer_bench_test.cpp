@@ -11,6 +11,7 @@
 #include "models/terrain/terrain_map.hpp"
 #include "tools/bench/initializer_bench_cells.hpp"
 #include "tools/bench/initializer_bench_table.hpp"
+#include "tools/bench/initializer_comparison.hpp"
 
 namespace wex {
 namespace {
@@ -181,6 +182,44 @@ TEST(InitializerBenchCells, HardTasksTurnAndMoveTheEndsFurther) {
   EXPECT_LE(most_yaw, 1.5708);
   EXPECT_GT(most_y, 1.5);
   EXPECT_LE(most_y, 3.0);
+}
+
+TEST(InitializerComparison, EveryMechanismOfEitherModeIsSwitchedOffOnce) {
+  const auto variants = initializer_variants(InitializerComparison::kMechanisms);
+  ASSERT_EQ(variants.size(), 10U);
+  std::set<std::string> names;
+  for (const InitializerVariant& variant : variants) {
+    names.insert(variant.name);
+    PlanAblation ablation;
+    if (variant.off == nullptr) continue;
+    ablation.*variant.off = false;
+    const int left = ablation.certificate_first + ablation.alignment + ablation.blocking +
+                     ablation.certified_tree + ablation.filtered_heights +
+                     ablation.nearest_traversable + ablation.arm_centring + ablation.arm_support;
+    EXPECT_EQ(left, 7) << variant.name;
+    const bool of_paper = !ablation.filtered_heights || !ablation.nearest_traversable ||
+                          !ablation.arm_centring || !ablation.arm_support;
+    EXPECT_EQ(variant.mode, of_paper ? PlanMode::kPaper : PlanMode::kCertified) << variant.name;
+  }
+  EXPECT_EQ(names.size(), variants.size());
+}
+
+TEST(InitializerComparison, CountsPathsAndAcceptedPlansOfEveryVariant) {
+  std::vector<InitializerVariantRows> variants;
+  for (const InitializerVariant& variant : initializer_variants(InitializerComparison::kModes)) {
+    variants.push_back({variant, rows_of(kGap, 3, 4)});
+    for (const InitializerRow& more : rows_of(kRough, 1, 2)) variants.back().rows.push_back(more);
+  }
+  ASSERT_EQ(variants.size(), 2U);
+  for (InitializerRow& row : variants.back().rows) {
+    row.accepted = false;
+    row.paths = row.seed == 1;
+  }
+  const std::string by_cell = comparison_by_cell({kGap, kRough}, variants);
+  EXPECT_THAT(by_cell, HasSubstr("|      4      3/4      0.200  |      1      0/4          -"));
+  const std::string by_variant = comparison_by_variant({kGap, kRough}, variants);
+  EXPECT_THAT(by_variant, HasSubstr("     3/4/4      1/2/2       4/6/6     0.150     0.285"));
+  EXPECT_THAT(by_variant, HasSubstr("     0/1/4      0/1/2       0/2/6         -         -"));
 }
 
 TEST(InitializerBench, RefusesCellsItDoesNotKnow) {

@@ -14,7 +14,8 @@
 namespace wex::app {
 namespace {
 
-void add_initializer_bench(CLI::App& bench, InitializerBenchOptions& options) {
+void add_initializer_bench(CLI::App& bench, InitializerBenchOptions& options,
+                           InitializerComparison& comparison) {
   CLI::App& command = *bench.add_subcommand(
       "initializer",
       "Plans over the twenty cells of terrain and difficulty, checked by others' eyes");
@@ -29,6 +30,14 @@ void add_initializer_bench(CLI::App& bench, InitializerBenchOptions& options) {
       ->transform(CLI::CheckedTransformer(kSets))
       ->type_name("SET")
       ->default_str("cells");
+  static const std::map<std::string, InitializerComparison> kComparisons{
+      {"modes", InitializerComparison::kModes}, {"mechanisms", InitializerComparison::kMechanisms}};
+  command
+      .add_option("--compare", comparison,
+                  "Side by side: modes: the default and the paper's; mechanisms: both, whole and "
+                  "without each of their mechanisms")
+      ->transform(CLI::CheckedTransformer(kComparisons))
+      ->type_name("WHAT");
   command.add_option("--seeds", options.seeds, "Seeds per cell")
       ->check(CLI::Range(1, 1000))
       ->type_name("N")
@@ -95,8 +104,13 @@ void add_replan_bench(CLI::App& bench, ReplanBenchOptions& options) {
       ->capture_default_str();
 }
 
-int initializer_bench_command(const InitializerBenchOptions& options, std::ostream& out,
+int initializer_bench_command(const InitializerBenchOptions& options,
+                              InitializerComparison comparison, std::ostream& out,
                               std::ostream& err) {
+  if (comparison != InitializerComparison::kNone) {
+    const Result<void> compared = compare_initializers(options, comparison, out, err);
+    return compared ? 0 : refuse(err, compared.error());
+  }
   const Result<InitializerBenchOutcome> outcome = bench_initializer(options, out, err);
   if (!outcome) return refuse(err, outcome.error());
   if (const auto drawn = draw_initializer_bench(*outcome, options.out); !drawn) {
@@ -124,7 +138,7 @@ void add_bench(CLI::App& app, BenchOptions& options) {
   bus.add_option("--out", can.out, "Folder for can_bench.csv and the log")
       ->type_name("DIR")
       ->capture_default_str();
-  add_initializer_bench(command, options.initializer);
+  add_initializer_bench(command, options.initializer, options.comparison);
   add_bridge_bench(command, options.bridge);
   CLI::App& supports = *command.add_subcommand(
       "supports", "Where the machine could only stand on supports that are not planned");
@@ -185,7 +199,9 @@ int bench_command(const CLI::App& command, const BenchOptions& options, std::ost
   if (name == "terrain") return bench_terrain();
   if (name == "kinematics") return bench_kinematics();
   if (name == "mpc") return bench_mpc();
-  if (name == "initializer") return initializer_bench_command(options.initializer, out, err);
+  if (name == "initializer") {
+    return initializer_bench_command(options.initializer, options.comparison, out, err);
+  }
   if (name == "bridge") return bridge_bench_command(options.bridge, out, err);
   if (name == "supports") {
     const Result<void> done = bench_supports(options.supports, out);

@@ -8,6 +8,7 @@
 #include "tools/bench/can_bench.hpp"
 #include "tools/bench/drive_bench.hpp"
 #include "tools/bench/initializer_bench.hpp"
+#include "tools/bench/initializer_comparison.hpp"
 #include "tools/bench/replan_bench.hpp"
 #include "tools/bench/roadmap_bench.hpp"
 #include "tools/bench/supports_bench.hpp"
@@ -19,6 +20,7 @@ struct BenchOptions {
   DriveBenchOptions drive;
   CanBenchOptions can;
   InitializerBenchOptions initializer;
+  InitializerComparison comparison = InitializerComparison::kNone;
   ReplanBenchOptions replan;
   RoadmapBenchOptions roadmap;
   Algorithm2BenchOptions algorithm2;

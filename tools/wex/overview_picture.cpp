@@ -251,7 +251,7 @@ class Overview {
     for (std::size_t k = 0; k < std::min(failed_.size(), kMaxFailedPlaces); ++k) {
       line(std::to_string(k + 1) + "  " + std::to_string(failed_[k].count) +
            (failed_[k].last.stepping ? " stepping" : " driving") +
-           " path(s) died here: " + failed_[k].last.why);
+           " path(s) found no way through here: " + failed_[k].last.why);
     }
   }
 
@@ -379,8 +379,8 @@ class Overview {
       }
       entry(text, [this, x, stepping](double at) { cross({x + 16.0, at}, stepping); });
     };
-    failed(true, "no way on, stepping");
-    failed(false, "no way on, driving");
+    failed(true, "no way through, stepping");
+    failed(false, "no way through, driving");
     const auto patch = [&](const Color& c) {
       return [this, x, c](double at) {
         canvas_.fill({x + 4.0, at - 8.0, 24.0, 16.0}, c);
