@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -12,14 +11,10 @@
 
 namespace wex {
 
-/// Built once and kept in the system's temporary folder: every test is a process of its own.
+/// Built once a process.
 inline const Roadmaps& test_roadmaps() {
-  static const Roadmaps roadmaps = [] {
-    auto loaded = load_or_build_roadmaps(
-        test_machine(), {}, std::filesystem::temp_directory_path() / "wex_test_roadmaps");
-    if (!loaded) throw std::runtime_error(loaded.error().message);
-    return *std::move(loaded);
-  }();
+  static const Roadmaps roadmaps =
+      build_roadmaps(test_machine(), CollisionModel::build(test_machine()));
   return roadmaps;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "models/terrain/raster_io.hpp"
+#include "tests/support/scratch_folder.hpp"
 #include "tests/tools/program.hpp"
 
 namespace wex::test {
@@ -243,12 +244,12 @@ TEST_F(BadInput, ValuesOutOfRange) {
 }
 
 TEST(Program, HelpsEverywhere) {
-  const auto folder = std::filesystem::temp_directory_path();
+  const ScratchFolder folder("help");
   const std::vector<std::vector<std::string>> commands{
       {}, {"run"}, {"plan"}, {"terrain"}, {"model"}, {"bench"}, {"bench", "drive"}};
   for (std::vector<std::string> command : commands) {
     command.push_back("--help");
-    const ProgramOutcome outcome = run_program(folder, command);
+    const ProgramOutcome outcome = run_program(folder.path(), command);
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_THAT(outcome.out, HasSubstr("Usage"));
     EXPECT_EQ(outcome.err, "");
@@ -256,7 +257,8 @@ TEST(Program, HelpsEverywhere) {
 }
 
 TEST(Program, TellsItsVersion) {
-  const ProgramOutcome outcome = run_program(std::filesystem::temp_directory_path(), {"--version"});
+  const ScratchFolder folder("version");
+  const ProgramOutcome outcome = run_program(folder.path(), {"--version"});
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.out, ::testing::MatchesRegex("wex [0-9]+\\.[0-9]+\\.[0-9]+\n"));
 }
