@@ -161,14 +161,14 @@ class Verifier {
 
   // The arm as it is carried while driving; where it moves, its paths were checked as it did.
   std::optional<std::string> carried_arm_violation(const WholeBodyNode& node) const {
-    if (!machine_.arm) return std::nullopt;
+    if (!machine_.arm || !is_carried(node)) return std::nullopt;
     const auto height_at = [&](const Eigen::Vector2d& p) { return terrain_.height_m(p); };
     for (std::size_t c = 0; c < shape_.capsules().size(); ++c) {
       const CollisionModel::Capsule& capsule = shape_.capsules()[c];
       if (capsule.part != CollisionModel::Part::kArm) continue;
       const double clearance_m =
           shape_.ground_clearance_m(workspace_, static_cast<int>(c), kArmSpacingM, height_at);
-      if (clearance_m < 0.0 && is_carried(node)) {
+      if (clearance_m < 0.0) {
         return with_number(capsule.name + " in the ground [m]:", clearance_m);
       }
     }

@@ -259,20 +259,25 @@ struct MarginInMoment {
 
 }  // namespace
 
+std::array<Eigen::Vector2d, 3> PaperCheck::wheel_corners(const Eigen::Isometry3d& T_world_base,
+                                                         const PaperStance& stance) const noexcept {
+  std::array<Eigen::Vector2d, 3> corners;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < kNumWheels; ++i) {
+    if (!stance.contacts[i]) continue;
+    corners[count++] = (T_world_base * legs_[i].p_base_contact(stance.vertex[i])).head<2>();
+  }
+  return corners;
+}
+
 // Three wheels stand: the arm goes where the centre of mass is as far inside their triangle as can
 // be. Every lane of the blocks keeps its best row, so that there is another choice if the bucket
 // would be in the ground.
 void PaperCheck::balance_with_arm(const Eigen::Isometry3d& T_world_base, const CellPose& pose,
                                   const Eigen::Vector3d& moment_base,
                                   PaperStance& stance) const noexcept {
-  std::array<Eigen::Vector2d, 3> corners;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < kNumWheels; ++i) {
-    if (!stance.contacts[i]) continue;
-    corners[count++] =
-        (T_world_base * legs_[i].p_base_contact(stance.vertex[i])).template head<2>();
-  }
-  const MarginInMoment margin(T_world_base, moment_base, mass_kg_, corners);
+  const MarginInMoment margin(T_world_base, moment_base, mass_kg_,
+                              wheel_corners(T_world_base, stance));
   if (!settings_.ablation.arm_centring) {
     const Eigen::Vector3f m = arm_moment_base_.cast<float>();
     stance.margin_m = static_cast<double>(margin.at(m.x(), m.y(), m.z()));
@@ -326,13 +331,7 @@ void PaperCheck::balance_with_arm(const Eigen::Isometry3d& T_world_base, const C
 double PaperCheck::margin_on_bucket_m(const Eigen::Isometry3d& T_world_base,
                                       const Eigen::Vector3d& moment_base, const PaperStance& stance,
                                       int row) const noexcept {
-  std::array<Eigen::Vector2d, 3> corners;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < kNumWheels; ++i) {
-    if (!stance.contacts[i]) continue;
-    corners[count++] =
-        (T_world_base * legs_[i].p_base_contact(stance.vertex[i])).template head<2>();
-  }
+  std::array<Eigen::Vector2d, 3> corners = wheel_corners(T_world_base, stance);
   corners[2] = (T_world_base * bucket_.p_base_contact(row)).template head<2>();
   const Eigen::Vector3d com = T_world_base * ((moment_base + bucket_.moment_base(row)) / mass_kg_);
   return hull_margin_m(com.head<2>(), corners);
@@ -401,13 +400,8 @@ Eigen::Vector3d PaperCheck::moment_but_arm(const PaperStance& stance) const noex
 
 std::vector<int> PaperCheck::counterweights(const PaperStance& stance) const {
   const Eigen::Isometry3d T_world_base = T_world_base_from(stance.base);
-  std::array<Eigen::Vector2d, 3> corners;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < kNumWheels; ++i) {
-    if (!stance.contacts[i]) continue;
-    corners[count++] = (T_world_base * legs_[i].p_base_contact(stance.vertex[i])).head<2>();
-  }
-  const MarginInMoment margin(T_world_base, moment_but_arm(stance), mass_kg_, corners);
+  const MarginInMoment margin(T_world_base, moment_but_arm(stance), mass_kg_,
+                              wheel_corners(T_world_base, stance));
   std::vector<std::pair<float, int>> by_margin;
   for (int row = 0; row < swing_.size(); ++row) {
     const Eigen::Vector3f moment = swing_.moment_base(row).cast<float>();

@@ -102,6 +102,9 @@ class PaperCheck {
                         const Eigen::Vector3d& moment_base, PaperStance& stance) const noexcept;
   void support_with_arm(const Eigen::Isometry3d& T_world_base, const CellPose& pose,
                         const Eigen::Vector3d& moment_base, PaperStance& stance) const noexcept;
+  /// Where the standing wheels touch, two or three; the rest is not set.
+  [[nodiscard]] std::array<Eigen::Vector2d, 3> wheel_corners(
+      const Eigen::Isometry3d& T_world_base, const PaperStance& stance) const noexcept;
   [[nodiscard]] Eigen::Vector3d moment_but_arm(const PaperStance& stance) const noexcept;
   [[nodiscard]] double margin_on_bucket_m(const Eigen::Isometry3d& T_world_base,
                                           const Eigen::Vector3d& moment_base,

@@ -106,7 +106,6 @@ class SwingCheck {
   // At node `from` the wheel has only just left the ground, at `to` it is on it again.
   [[nodiscard]] std::optional<NodeFault> in_flight(std::size_t wheel, std::size_t from,
                                                    std::size_t to) {
-    constexpr double kFootholdM = 0.28;  // beyond which the wheel swings
     constexpr int kAngles = 21;
     constexpr double kHalfAngleRad = 1.4, kBetweenAnglesM = 0.002;
     const WheeledLeg& leg = machine_.legs[wheel];

@@ -18,9 +18,8 @@ constexpr double kCounterWeightClearM = 0.3;
 constexpr double kBucketHalfWidthM = 0.6;  // where the ends of its edge are looked at
 constexpr double kBucketUnevenM = 0.15;    // ground under the ends against the middle
 constexpr double kClawClearM = 0.05;
-constexpr double kFootholdM = 0.28;  // beyond which a wheel swings and no longer lifts off
-constexpr double kBallM = 0.02;      // a tyre lowered as a ball beside steep edges
-constexpr int kClawSamples = 5;      // a claw is 0.9 m long
+constexpr double kBallM = 0.02;  // a tyre lowered as a ball beside steep edges
+constexpr int kClawSamples = 5;  // a claw is 0.9 m long
 constexpr int kBeamSamples = 3, kForearmSamples = 4, kBucketSamples = 3;
 constexpr double kResidualM = 0.004;  // wheel centre against the ground, before it is refined
 constexpr int kMaxRefinements = 12;

@@ -45,4 +45,7 @@ template <typename HeightAt>
 }
 inline constexpr double kTreadErrorM = 0.017;
 
+/// Horizontal distance from its foothold beyond which a wheel swings: nearer it lifts off or lands.
+inline constexpr double kFootholdM = 0.28;
+
 }  // namespace wex

@@ -23,15 +23,6 @@ std::string format(const char* pattern, Values... values) {
   return text;
 }
 
-double percentile(std::vector<double> values, double share) {
-  if (values.empty()) return std::nan("");
-  std::sort(values.begin(), values.end());
-  const double place = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  return std::lerp(values[below], values[above], place - static_cast<double>(below));
-}
-
 std::vector<const InitializerRow*> rows_of(const std::vector<InitializerRow>& rows,
                                            const std::string& cell) {
   std::vector<const InitializerRow*> own;
@@ -47,6 +38,15 @@ int accepted(const std::vector<const InitializerRow*>& rows) {
 }
 
 }  // namespace
+
+double percentile(std::vector<double> values, double share) {
+  if (values.empty()) return std::nan("");
+  std::sort(values.begin(), values.end());
+  const double place = share * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, values.size() - 1);
+  return std::lerp(values[below], values[above], place - static_cast<double>(below));
+}
 
 std::string csv_line(const InitializerRow& row) {
   std::string reason = row.reason;

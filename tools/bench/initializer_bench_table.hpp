@@ -8,6 +8,9 @@
 
 namespace wex {
 
+/// The value below which a share of some values lies, linear between two of them; NaN for none.
+[[nodiscard]] double percentile(std::vector<double> values, double share);
+
 [[nodiscard]] std::string initializer_table(const std::vector<InitializerCell>& cells,
                                             const std::vector<InitializerRow>& rows);
 [[nodiscard]] std::string initializer_csv(const std::vector<InitializerRow>& rows);

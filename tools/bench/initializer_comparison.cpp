@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <sstream>
 
+#include "tools/bench/initializer_bench_table.hpp"
+
 namespace wex {
 namespace {
 
@@ -24,16 +26,6 @@ struct Counts {
     with_path += row.paths > 0;
     accepted += row.accepted;
     if (row.accepted) first_s.push_back(row.first_s);
-  }
-  /// Of the times to the first accepted plan; NaN if there is none.
-  [[nodiscard]] double first_quantile_s(double share) const {
-    if (first_s.empty()) return std::nan("");
-    std::vector<double> sorted = first_s;
-    std::sort(sorted.begin(), sorted.end());
-    const double place = share * static_cast<double>(sorted.size() - 1);
-    const auto below = static_cast<std::size_t>(place);
-    return std::lerp(sorted[below], sorted[std::min(below + 1, sorted.size() - 1)],
-                     place - static_cast<double>(below));
   }
 };
 
@@ -101,7 +93,7 @@ std::string comparison_by_cell(const std::vector<InitializerCell>& cells,
     for (const InitializerVariantRows& variant : variants) {
       const Counts counts = counts_of(variant, cell.name);
       text += format("  |  %5d  %5d/%-2d ", counts.with_path, counts.accepted, counts.runs) +
-              seconds(counts.first_quantile_s(0.5));
+              seconds(percentile(counts.first_s, 0.5));
     }
     text += "\n";
   }
@@ -130,7 +122,8 @@ std::string comparison_by_variant(const std::vector<InitializerCell>& cells,
       text += format(" %10s", format("%d/%d/%d", here.accepted, here.with_path, here.runs).c_str());
     }
     text += format(" %11s ", format("%d/%d/%d", all.accepted, all.with_path, all.runs).c_str()) +
-            seconds(all.first_quantile_s(0.5)) + " " + seconds(all.first_quantile_s(0.95)) + "\n";
+            seconds(percentile(all.first_s, 0.5)) + " " + seconds(percentile(all.first_s, 0.95)) +
+            "\n";
   }
   return text;
 }

@@ -15,6 +15,7 @@
 #include "initializer/replan/replan.hpp"
 #include "models/terrain/synthetic.hpp"
 #include "models/types/cpu_clock.hpp"
+#include "tools/bench/uniform.hpp"
 #include "tools/check/plan_checker.hpp"
 
 namespace wex {
@@ -56,8 +57,6 @@ void print(std::ostream& out, const char* format, ...) {
   va_end(arguments);
   out << line << std::flush;
 }
-
-double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11U) * 0x1.0p-53; }
 
 double median(std::vector<double> values) {
   if (values.empty()) return std::nan("");

@@ -14,6 +14,7 @@
 #include "initializer/stepping/stance_projection.hpp"
 #include "models/excavator/machine_model.hpp"
 #include "models/terrain/synthetic.hpp"
+#include "tools/bench/uniform.hpp"
 
 namespace wex {
 namespace {
@@ -151,14 +152,13 @@ Result<void> bench_supports(const SupportsBenchOptions& options, std::ostream& o
       const StanceCheck check(stance_ground, *tables);
       const Supports supports(check, plan);
       std::mt19937_64 random(static_cast<std::uint64_t>(seed));
-      const auto uniform = [&] { return static_cast<double>(random() >> 11U) * 0x1.0p-53; };
       const Pose2 &start = made->task.start, &goal = made->task.goal;
       const double middle_m = 0.5 * (map->min_corner_m().y() + map->max_corner_m().y());
       for (int k = 0; k < options.poses; ++k) {
         Pose2 pose;
-        pose.x_m = std::lerp(start.x_m, goal.x_m, uniform()) - origin.x();
-        pose.y_m = middle_m + kSidewaysM * (2.0 * uniform() - 1.0);
-        const double turn = uniform();
+        pose.x_m = std::lerp(start.x_m, goal.x_m, uniform(random)) - origin.x();
+        pose.y_m = middle_m + kSidewaysM * (2.0 * uniform(random) - 1.0);
+        const double turn = uniform(random);
         pose.yaw_rad = std::isnan(ground.yaw_rad) ? 2.0 * std::numbers::pi * turn
                        : turn < 0.5               ? ground.yaw_rad
                                                   : -ground.yaw_rad;
